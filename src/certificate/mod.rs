@@ -1,0 +1,1 @@
+//! Exact checks on a finished map.

@@ -1,0 +1,25 @@
+//! foldfree: maps that do not fold.
+//!
+//! Geometry optimisation on triangle and tetrahedral meshes. Data passes through the rooms of this
+//! crate in one direction:
+//!
+//! ```text
+//! bytes → mesh → problem → solver ⟲ step → report/state → certificate
+//! ```
+//!
+//! See `ARCHITECTURE.md` for what lives where and why.
+
+pub mod certificate;
+pub mod embedding;
+pub mod energy;
+mod error;
+pub mod geometry;
+pub mod linalg;
+pub mod local_global;
+pub mod mesh;
+pub mod optim;
+pub mod parameterization;
+pub mod space;
+pub mod wrapd;
+
+pub use error::Error;

@@ -1,0 +1,68 @@
+//! Errors of building and stepping a solver.
+
+// The fields of these variants are what the message of the variant says of them.
+#![allow(missing_docs)]
+
+/// Why a solver could not be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BuildError {
+    /// A rest element has no measure.
+    #[error("element {index} is degenerate: its measure is {measure:e}")]
+    DegenerateElement { index: usize, measure: f64 },
+    /// The solver needs an injective start.
+    #[error("the start has {inverted} inverted elements, and this method needs none")]
+    NotInjectiveStart { inverted: usize },
+    /// An option is out of its range.
+    #[error("option {option}: {what}")]
+    InvalidOption { option: &'static str, what: String },
+    /// Shapes of arguments do not fit.
+    #[error("{argument} has length {found}, expected {expected}")]
+    WrongLength {
+        argument: &'static str,
+        expected: usize,
+        found: usize,
+    },
+    /// A system matrix is not positive definite.
+    #[error("the system matrix is not positive definite (pivot {pivot})")]
+    NotPositiveDefinite { pivot: usize },
+    /// The factor would not fit into memory.
+    #[error("the factorisation needs {bytes} bytes, more than the {limit} allowed")]
+    TooLarge { bytes: u64, limit: u64 },
+}
+
+impl BuildError {
+    /// A short stable name of the error's kind.
+    pub fn code(&self) -> &'static str {
+        match self {
+            BuildError::DegenerateElement { .. } => "degenerate-element",
+            BuildError::NotInjectiveStart { .. } => "not-injective-start",
+            BuildError::InvalidOption { .. } => "invalid-option",
+            BuildError::WrongLength { .. } => "wrong-length",
+            BuildError::NotPositiveDefinite { .. } => "not-positive-definite",
+            BuildError::TooLarge { .. } => "too-large",
+        }
+    }
+}
+
+/// Why a step failed. The solver keeps its last good iterate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolveError {
+    /// A refactorisation met a non-positive pivot.
+    #[error("iteration {iteration}: the system matrix lost positive definiteness (pivot {pivot})")]
+    NotPositiveDefinite { iteration: usize, pivot: usize },
+    /// The iterate is no longer finite.
+    #[error("iteration {iteration}: vertex {vertex} is no longer finite")]
+    NonFinite { iteration: usize, vertex: usize },
+}
+
+impl SolveError {
+    /// A short stable name of the error's kind.
+    pub fn code(&self) -> &'static str {
+        match self {
+            SolveError::NotPositiveDefinite { .. } => "not-positive-definite",
+            SolveError::NonFinite { .. } => "non-finite",
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! What every iterative solver shares: status, reports, cancellation, errors.
+
+mod error;
+mod solver;
+
+pub use error::{BuildError, SolveError};
+pub use solver::{
+    CancelToken, Criterion, Inspection, Observer, Phase, PhaseKind, Solver, Status, StepReport, run,
+};

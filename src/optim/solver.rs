@@ -1,0 +1,173 @@
+//! The one object-safe interface of all iterative solvers.
+
+use super::SolveError;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What stopped a converged solver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Criterion {
+    /// The relative change of the energy fell below the tolerance.
+    EnergyChange,
+    /// The norm of the gradient fell below the tolerance.
+    GradientNorm,
+    /// The method is direct: one step is all of it.
+    Direct,
+}
+
+/// Where a solver stands. Not having converged is a status, never an error.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Status {
+    /// More steps can be taken.
+    Running,
+    /// Done.
+    Converged(Criterion),
+    /// The iteration cap was reached.
+    MaxIterations,
+    /// No further progress is possible in floating point.
+    Stalled,
+    /// The caller cancelled.
+    Cancelled,
+}
+
+impl Status {
+    /// `"running"`, `"converged"`, `"max-iterations"`, `"stalled"` or `"cancelled"`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Running => "running",
+            Status::Converged(_) => "converged",
+            Status::MaxIterations => "max-iterations",
+            Status::Stalled => "stalled",
+            Status::Cancelled => "cancelled",
+        }
+    }
+}
+
+/// The phases an iteration can consist of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PhaseKind {
+    /// The per-element proximal step.
+    Local,
+    /// The solve for the vertex positions.
+    Global,
+    /// New element weights and the numeric refactorisation they need.
+    Reweight,
+    /// Energy, flips and termination.
+    Evaluate,
+}
+
+/// One phase of one iteration: what it did and how long it took.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Phase {
+    /// Which phase.
+    pub kind: PhaseKind,
+    /// How often its inner loop ran (local: most prox iterations of any element; global: L-BFGS
+    /// iterations; reweight: 1; evaluate: 1).
+    pub count: u32,
+    /// Wall time in milliseconds.
+    pub milliseconds: f64,
+}
+
+/// What one step did. Energies are relative to an isometry as each energy's docs say.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct StepReport {
+    /// 0 is the start, before any step.
+    pub iteration: usize,
+    /// The solver's status after the step (`statusName` in JavaScript is its name).
+    pub status: Status,
+    /// The energy of the iterate; while it has inverted elements and the energy is infinite there,
+    /// the energy of the local variables Z.
+    pub energy: f64,
+    /// Number of inverted or degenerate elements (signed measure ≤ 0, in floating point).
+    pub inverted: usize,
+    /// Norm of the energy's gradient at the iterate (infinite while inverted).
+    pub gradient_norm: f64,
+    /// Smallest signed singular value of any element.
+    pub smallest_sigma: f64,
+    /// Largest singular value of any element.
+    pub largest_sigma: f64,
+    /// L-BFGS iterations of the global step (0 where there are none).
+    pub lbfgs_iterations: usize,
+    /// Did the element weights change in this step?
+    pub reweighted: bool,
+    /// Seconds since the solver's first step began, setup apart.
+    pub seconds: f64,
+    /// The phases, in order.
+    pub phases: Vec<Phase>,
+}
+
+/// Per-element fields a page draws.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Inspection {
+    /// Symmetric Dirichlet density of each element relative to an isometry (1: isometric), signed
+    /// infinity where inverted; length: elements.
+    pub distortion: Vec<f32>,
+    /// Current weight over rest weight of each element; empty where the method has no weights.
+    pub weights: Vec<f32>,
+}
+
+/// One solver: `step` is one iteration of the paper's algorithm.
+pub trait Solver: Send {
+    /// Takes one step. After the status has left `Running` a further call takes another step all the
+    /// same (a page may want to see it), unless the solver is direct.
+    fn step(&mut self) -> Result<StepReport, SolveError>;
+    /// Positions, vertices × dimension, interleaved, in the solver's own scale.
+    fn positions(&self) -> &[f64];
+    /// Dimension of `positions`.
+    fn dimension(&self) -> usize;
+    /// Where it stands.
+    fn status(&self) -> Status;
+    /// The newest report (iteration 0 before any step).
+    fn report(&self) -> &StepReport;
+    /// The per-element fields at the newest iterate.
+    fn inspect(&self) -> Inspection;
+}
+
+/// Sees every step of [`run`].
+pub trait Observer {
+    /// Called after every step, and once before the first with the report of iteration 0.
+    fn observe(&mut self, solver: &dyn Solver);
+}
+
+impl<F: FnMut(&dyn Solver)> Observer for F {
+    fn observe(&mut self, solver: &dyn Solver) {
+        self(solver)
+    }
+}
+
+/// Cancels a running solver from another thread or from an observer.
+#[derive(Debug, Clone, Default)]
+pub struct CancelToken(Arc<AtomicBool>);
+
+impl CancelToken {
+    /// Asks for the run to end after the current step.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+    /// Was `cancel` called?
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Steps until the solver is no longer running, or is cancelled.
+pub fn run(
+    solver: &mut dyn Solver,
+    observer: &mut dyn Observer,
+    cancel: &CancelToken,
+) -> Result<Status, SolveError> {
+    observer.observe(solver);
+    while solver.status() == Status::Running {
+        if cancel.is_cancelled() {
+            return Ok(Status::Cancelled);
+        }
+        solver.step()?;
+        observer.observe(solver);
+    }
+    Ok(solver.status())
+}

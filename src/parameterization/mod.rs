@@ -1,0 +1,6 @@
+//! From a mesh to a flattening: the problem (a disk, scaled to unit area), its starts, and the
+//! choice of a solver.
+
+mod options;
+
+pub use options::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};

@@ -1,0 +1,101 @@
+//! The options of a parameterization, as a person names them.
+
+use serde::{Deserialize, Serialize};
+
+/// How the map is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// Rotation-aware ADMM with dynamic reweighting (Brown & Narain 2021).
+    #[default]
+    Wrapd,
+    /// Rotation-aware ADMM with the rest weights (the paper's R-ADMM).
+    RAdmm,
+    /// ADMM-PD with dynamic reweighting (the paper's W-ADMM).
+    WAdmm,
+    /// ADMM-PD (Overby et al. 2017).
+    AdmmPd,
+    /// ARAP by local/global (Liu et al. 2008).
+    Arap,
+    /// Least squares conformal map (Lévy et al. 2002): direct.
+    Lscm,
+    /// Cotangent harmonic map to a circle: direct.
+    Harmonic,
+    /// Uniform-weight Tutte map to a circle: direct.
+    Tutte,
+}
+
+/// The energy an ADMM method minimises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EnergyKind {
+    /// ψ = σ₁² + σ₁⁻² + σ₂² + σ₂⁻²; reported as ¼ Σ A (ψ − 4) + 1, so an isometry has 1.
+    #[default]
+    SymmetricDirichlet,
+    /// ψ = (σ₁ − 1)² + (σ₂ − 1)²; an isometry has 0.
+    Arap,
+}
+
+/// Where an iterative method starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Harmonic, and Tutte where harmonic has flips (the paper's).
+    #[default]
+    Automatic,
+    /// Cotangent harmonic on a circle, flips and all.
+    Harmonic,
+    /// Tutte on a circle.
+    Tutte,
+    /// Least squares conformal.
+    Lscm,
+    /// Every vertex at a random place (from `seed`).
+    Random,
+    /// Every vertex at one point.
+    Collapsed,
+}
+
+/// What to do with a surface that is not a disk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CutPolicy {
+    /// Cut it to a disk along short seams.
+    #[default]
+    Cut,
+    /// Refuse with `NotADisk`.
+    Refuse,
+}
+
+/// All options of a parameterization; `Default` is the paper's choice.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase", default, deny_unknown_fields)]
+pub struct ParameterizationOptions {
+    /// The method.
+    pub method: Method,
+    /// The energy of the ADMM methods.
+    pub energy: EnergyKind,
+    /// The start of the iterative methods.
+    pub start: Start,
+    /// What to do when the surface is not a disk.
+    pub cut: CutPolicy,
+    /// Stop when |ΔE|/E or |∇E| falls below this and nothing was inverted in the last two iterates.
+    pub tolerance: f64,
+    /// Stop after this many iterations.
+    pub max_iterations: usize,
+    /// Seed of the random start.
+    pub seed: u32,
+}
+
+impl Default for ParameterizationOptions {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            energy: EnergyKind::default(),
+            start: Start::default(),
+            cut: CutPolicy::default(),
+            tolerance: 1e-6,
+            max_iterations: 5000,
+            seed: 1,
+        }
+    }
+}
