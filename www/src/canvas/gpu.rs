@@ -5,7 +5,8 @@ use std::cell::RefCell;
 use glam::{Mat3, Mat4};
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{
-    HtmlCanvasElement, WebGl2RenderingContext as Gl, WebGlBuffer, WebGlProgram, WebGlTexture, WebGlVertexArrayObject,
+    HtmlCanvasElement, WebGl2RenderingContext as Gl, WebGlBuffer, WebGlProgram, WebGlTexture,
+    WebGlVertexArrayObject,
 };
 
 use crate::colour::{self, Rgb, Theme};
@@ -94,9 +95,21 @@ impl Gpu {
         let array = || gl.create_vertex_array().ok_or_else(missing);
         let ramp = gl.create_texture().ok_or_else(missing)?;
         let gpu = Self {
-            shape: program(&gl, include_str!("shaders/shape.vert"), &fragment(include_str!("shaders/shape.frag")))?,
-            map: program(&gl, include_str!("shaders/map.vert"), &fragment(include_str!("shaders/map.frag")))?,
-            line: program(&gl, include_str!("shaders/line.vert"), include_str!("shaders/line.frag"))?,
+            shape: program(
+                &gl,
+                include_str!("shaders/shape.vert"),
+                &fragment(include_str!("shaders/shape.frag")),
+            )?,
+            map: program(
+                &gl,
+                include_str!("shaders/map.vert"),
+                &fragment(include_str!("shaders/map.frag")),
+            )?,
+            line: program(
+                &gl,
+                include_str!("shaders/line.vert"),
+                include_str!("shaders/line.frag"),
+            )?,
             ramp,
             triangles: array()?,
             seam: array()?,
@@ -168,7 +181,11 @@ impl Gpu {
 
     fn fill(&self, buffer: &WebGlBuffer, data: &[f32]) {
         self.gl.bind_buffer(Gl::ARRAY_BUFFER, Some(buffer));
-        self.gl.buffer_data_with_u8_array(Gl::ARRAY_BUFFER, bytemuck::cast_slice(data), Gl::DYNAMIC_DRAW);
+        self.gl.buffer_data_with_u8_array(
+            Gl::ARRAY_BUFFER,
+            bytemuck::cast_slice(data),
+            Gl::DYNAMIC_DRAW,
+        );
     }
 
     /// Uploads a surface: corner positions and normals (three floats a corner), boundary segments.
@@ -177,7 +194,12 @@ impl Gpu {
         self.fill(&self.normals, normals);
         self.fill(&self.seam_points, seam);
         self.seam_count = (seam.len() / 3) as i32;
-        (self.corners, self.inverted_corners, self.outline_count, self.boundary_count) = (0, 0, 0, 0);
+        (
+            self.corners,
+            self.inverted_corners,
+            self.outline_count,
+            self.boundary_count,
+        ) = (0, 0, 0, 0);
     }
 
     /// Uploads the iterate to show.
@@ -218,7 +240,11 @@ impl Gpu {
         gl.bind_vertex_array(Some(&self.triangles));
         gl.draw_arrays(Gl::TRIANGLES, 0, self.corners);
         gl.disable(Gl::POLYGON_OFFSET_FILL);
-        let edge = if look.theme.dark { look.theme.ink } else { look.theme.outline };
+        let edge = if look.theme.dark {
+            look.theme.ink
+        } else {
+            look.theme.outline
+        };
         self.lines(&self.seam, 0, self.seam_count, matrix, edge, 0.8);
         gl.disable(Gl::DEPTH_TEST);
         self.end();
@@ -234,12 +260,23 @@ impl Gpu {
         if self.inverted_corners > 0 {
             gl.draw_elements_with_i32(Gl::TRIANGLES, self.inverted_corners, Gl::UNSIGNED_INT, 0);
         }
-        let edge = if look.theme.dark { look.theme.ink } else { look.theme.outline };
+        let edge = if look.theme.dark {
+            look.theme.ink
+        } else {
+            look.theme.outline
+        };
         self.lines(&self.outline, 0, self.boundary_count, matrix, edge, 0.8);
         let rest = self.outline_count - self.boundary_count;
         // Outlines of many small triangles would blacken the map: thin them out.
         let opacity = (6000.0 / rest.max(1) as f32).clamp(0.12, 1.0);
-        self.lines(&self.outline, self.boundary_count, rest, matrix, look.theme.outline, opacity);
+        self.lines(
+            &self.outline,
+            self.boundary_count,
+            rest,
+            matrix,
+            look.theme.outline,
+            opacity,
+        );
         self.end();
     }
 
@@ -250,24 +287,43 @@ impl Gpu {
         gl.bind_texture(Gl::TEXTURE_2D, Some(&self.ramp));
         let at = |name: &str| gl.get_uniform_location(program, name);
         gl.uniform1i(at("u_ramp").as_ref(), 0);
-        gl.uniform_matrix4fv_with_f32_array(at("u_matrix").as_ref(), false, &matrix.to_cols_array());
+        gl.uniform_matrix4fv_with_f32_array(
+            at("u_matrix").as_ref(),
+            false,
+            &matrix.to_cols_array(),
+        );
         gl.uniform1f(at("u_end").as_ref(), colour::DISTORTION_END.ln() as f32);
         gl.uniform1f(at("u_pixel").as_ref(), look.pixel);
-        gl.uniform1f(at("u_wire").as_ref(), if look.wireframe { 0.55 } else { 0.0 });
+        gl.uniform1f(
+            at("u_wire").as_ref(),
+            if look.wireframe { 0.55 } else { 0.0 },
+        );
         gl.uniform1i(at("u_hover").as_ref(), look.hover.map_or(-1, |t| t as i32));
         self.colour(program, "u_accent", look.theme.accent);
         self.colour(program, "u_outline", look.theme.outline);
         self.colour(program, "u_vermilion", colour::VERMILION);
     }
 
-    fn lines(&self, array: &WebGlVertexArrayObject, first: i32, count: i32, matrix: Mat4, colour: Rgb, opacity: f32) {
+    fn lines(
+        &self,
+        array: &WebGlVertexArrayObject,
+        first: i32,
+        count: i32,
+        matrix: Mat4,
+        colour: Rgb,
+        opacity: f32,
+    ) {
         if count <= 0 {
             return;
         }
         let gl = &self.gl;
         gl.use_program(Some(&self.line));
         let at = |name: &str| gl.get_uniform_location(&self.line, name);
-        gl.uniform_matrix4fv_with_f32_array(at("u_matrix").as_ref(), false, &matrix.to_cols_array());
+        gl.uniform_matrix4fv_with_f32_array(
+            at("u_matrix").as_ref(),
+            false,
+            &matrix.to_cols_array(),
+        );
         let [r, g, b] = colour.map(|c| f32::from(c) / 255.0);
         gl.uniform4f(at("u_colour").as_ref(), r, g, b, opacity);
         gl.bind_vertex_array(Some(array));
@@ -276,7 +332,12 @@ impl Gpu {
 
     fn colour(&self, program: &WebGlProgram, name: &str, colour: Rgb) {
         let [r, g, b] = colour.map(|c| f32::from(c) / 255.0);
-        self.gl.uniform3f(self.gl.get_uniform_location(program, name).as_ref(), r, g, b);
+        self.gl.uniform3f(
+            self.gl.get_uniform_location(program, name).as_ref(),
+            r,
+            g,
+            b,
+        );
     }
 
     fn end(&self) {
@@ -286,20 +347,34 @@ impl Gpu {
 }
 
 fn program(gl: &Gl, vertex: &str, fragment: &str) -> Result<WebGlProgram, JsValue> {
-    let program = gl.create_program().ok_or_else(|| JsValue::from_str("WebGL is out of memory"))?;
+    let program = gl
+        .create_program()
+        .ok_or_else(|| JsValue::from_str("WebGL is out of memory"))?;
     for (kind, source) in [(Gl::VERTEX_SHADER, vertex), (Gl::FRAGMENT_SHADER, fragment)] {
-        let shader = gl.create_shader(kind).ok_or_else(|| JsValue::from_str("WebGL is out of memory"))?;
+        let shader = gl
+            .create_shader(kind)
+            .ok_or_else(|| JsValue::from_str("WebGL is out of memory"))?;
         gl.shader_source(&shader, source);
         gl.compile_shader(&shader);
-        if !gl.get_shader_parameter(&shader, Gl::COMPILE_STATUS).is_truthy() {
-            return Err(JsValue::from_str(&gl.get_shader_info_log(&shader).unwrap_or_default()));
+        if !gl
+            .get_shader_parameter(&shader, Gl::COMPILE_STATUS)
+            .is_truthy()
+        {
+            return Err(JsValue::from_str(
+                &gl.get_shader_info_log(&shader).unwrap_or_default(),
+            ));
         }
         gl.attach_shader(&program, &shader);
         gl.delete_shader(Some(&shader));
     }
     gl.link_program(&program);
-    if !gl.get_program_parameter(&program, Gl::LINK_STATUS).is_truthy() {
-        return Err(JsValue::from_str(&gl.get_program_info_log(&program).unwrap_or_default()));
+    if !gl
+        .get_program_parameter(&program, Gl::LINK_STATUS)
+        .is_truthy()
+    {
+        return Err(JsValue::from_str(
+            &gl.get_program_info_log(&program).unwrap_or_default(),
+        ));
     }
     Ok(program)
 }
