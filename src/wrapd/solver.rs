@@ -88,7 +88,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             let slot = &slot;
             Cholesky::order(
                 free,
-                rest.pairs().map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
+                rest.pairs()
+                    .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
             )
         };
         for (k, &first) in order.iter().enumerate() {
@@ -276,12 +277,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         gather(self, false);
         let mut count = 0;
         loop {
-            let mut slope = self.history.direction(
-                &self.factor,
-                S::DIM,
-                &self.gradient,
-                &mut self.direction,
-            );
+            let mut slope =
+                self.history
+                    .direction(&self.factor, S::DIM, &self.gradient, &mut self.direction);
             if !(slope < 0.0) {
                 self.history.clear();
                 self.direction
@@ -294,9 +292,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 *x += d;
             }
             count += 1;
-            let last = C::LINEAR
-                || !(-slope > bound)
-                || count >= self.options.max_global_iterations;
+            let last =
+                C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
             let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
             if !C::LINEAR {
                 gather(self, true);
@@ -323,8 +320,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             block.stiffness.copy_from_slice(&block.candidate);
         }
         let blocks = &self.blocks;
-        self.matrix
-            .fill(|e| blocks[e / BLOCK].stiffness[e % BLOCK]);
+        self.matrix.fill(|e| blocks[e / BLOCK].stiffness[e % BLOCK]);
         self.history.clear();
         self.factor
             .factorize(self.matrix.matrix())
@@ -401,15 +397,16 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         self.report.iteration = k + 1;
         self.report.lbfgs_iterations = if C::LINEAR { 0 } else { count };
         self.report.reweighted = reweighted;
-        self.report.status = if injective && self.was_injective && change < tolerance * self.report.energy.abs() {
-            Status::Converged(Criterion::EnergyChange)
-        } else if injective && self.was_injective && self.report.gradient_norm < tolerance {
-            Status::Converged(Criterion::GradientNorm)
-        } else if self.report.iteration >= self.options.max_iterations {
-            Status::MaxIterations
-        } else {
-            Status::Running
-        };
+        self.report.status =
+            if injective && self.was_injective && change < tolerance * self.report.energy.abs() {
+                Status::Converged(Criterion::EnergyChange)
+            } else if injective && self.was_injective && self.report.gradient_norm < tolerance {
+                Status::Converged(Criterion::GradientNorm)
+            } else if self.report.iteration >= self.options.max_iterations {
+                Status::MaxIterations
+            } else {
+                Status::Running
+            };
         self.was_injective = injective;
         self.report.seconds = started.elapsed().as_secs_f64();
         let evaluate_phase = Phase {
