@@ -20,6 +20,8 @@ pub mod mesh;
 pub mod optim;
 pub mod parameterization;
 pub mod space;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 pub mod wrapd;
 
 pub use error::Error;
