@@ -1,7 +1,7 @@
 //! Mesh files: one file a format, all from and to byte slices.
 
 /// Why a file cannot be read, and where.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
 #[error("line {line}, column {column}: {what}")]
 pub struct ParseError {
     /// 1-based line.
