@@ -57,9 +57,70 @@ pub fn vertex_normals(positions: &[f64], indices: &[u32]) -> Vec<f32> {
         .collect()
 }
 
+/// How many times, on average, a map (n×2) covers its bounding box; 1 at least.
+pub fn layers(indices: &[u32], uv: &[f32]) -> usize {
+    let (mut low, mut high) = ([f32::MAX; 2], [f32::MIN; 2]);
+    for p in uv.as_chunks::<2>().0 {
+        for k in 0..2 {
+            (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+        }
+    }
+    let bounds = f64::from(high[0] - low[0]) * f64::from(high[1] - low[1]);
+    let at = |i: u32| {
+        [
+            f64::from(uv[2 * i as usize]),
+            f64::from(uv[2 * i as usize + 1]),
+        ]
+    };
+    let area: f64 = indices
+        .as_chunks::<3>()
+        .0
+        .iter()
+        .map(|&[a, b, c]| {
+            let (a, b, c) = (at(a), at(b), at(c));
+            0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs()
+        })
+        .sum();
+    if bounds > 0.0 && area.is_finite() {
+        ((area / bounds).ceil() as usize).max(1)
+    } else {
+        1
+    }
+}
+
+/// Corners in the order the map is painted: upright triangles, then inverted ones (those with a
+/// negative distortion), of each one in `thinning`.
+pub fn painting_order(distortions: &[f32], thinning: usize, out: &mut Vec<u32>) {
+    out.clear();
+    for inverted in [false, true] {
+        let triangles = (0..distortions.len()).filter(|t| (distortions[*t] < 0.0) == inverted);
+        for t in triangles.step_by(thinning.max(1)) {
+            let t = 3 * t as u32;
+            out.extend([t, t + 1, t + 2]);
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn layers_count_how_often_a_map_covers_itself() {
+        let square = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0f32];
+        assert_eq!(layers(&[0, 1, 2, 0, 2, 3], &square), 1);
+        assert_eq!(layers(&[0, 1, 2, 0, 2, 3].repeat(50), &square), 50);
+        assert_eq!(layers(&[0, 1, 2], &[0.0; 6]), 1);
+    }
+
+    #[test]
+    fn inverted_triangles_are_painted_last() {
+        let mut out = Vec::new();
+        painting_order(&[1.0, -1.0, 2.0], 1, &mut out);
+        assert_eq!(out, [0, 1, 2, 6, 7, 8, 3, 4, 5]);
+        painting_order(&[1.0, -1.0, 2.0], 2, &mut out);
+        assert_eq!(out, [0, 1, 2, 3, 4, 5]);
+    }
 
     #[test]
     fn a_square_has_four_boundary_edges() {

@@ -13,6 +13,10 @@ use crate::outline;
 /// Memory for the iterates of one run.
 const FRAME_BUDGET: usize = 192 << 20;
 
+/// How many times a map may cover itself before its triangles are drawn one for many: what lies
+/// deeper cannot be seen, and painting it would stop a graphics card.
+pub const MOST_LAYERS: usize = 24;
+
 /// Earlier runs kept as curves.
 const MOST_EARLIER_RUNS: usize = 6;
 
@@ -88,6 +92,8 @@ pub struct Bench {
     pub hover: Option<usize>,
     /// Inverted or collapsed triangles of the map on show.
     pub inverted: Vec<u32>,
+    /// Every how many triangles one is drawn in the map: 1 unless it covers itself many times.
+    pub thinning: usize,
     /// Events for the page.
     pub events: Vec<Event>,
     stale: bool,
@@ -100,7 +106,7 @@ struct Scratch {
     corner_distortions: Vec<f32>,
     corners: Vec<f32>,
     outline: Vec<f32>,
-    inverted_corners: Vec<u32>,
+    order: Vec<u32>,
 }
 
 impl Bench {
@@ -128,6 +134,7 @@ impl Bench {
             plot_seconds: false,
             hover: None,
             inverted: Vec::new(),
+            thinning: 1,
             events: Vec::new(),
             stale: false,
             scratch: Scratch::default(),
@@ -238,21 +245,23 @@ impl Bench {
             .corner_distortions
             .extend(scratch.distortions.iter().flat_map(|d| [*d; 3]));
         outline::per_corner(indices, map, 2, &mut scratch.corners);
-        scratch.inverted_corners.clear();
-        scratch.inverted_corners.extend(
-            self.inverted
-                .iter()
-                .flat_map(|t| [3 * t, 3 * t + 1, 3 * t + 2]),
-        );
+        self.thinning = outline::layers(indices, map).div_ceil(MOST_LAYERS).max(1);
+        outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
         scratch.outline.clear();
         outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.outline);
         let boundary = scratch.outline.len();
-        outline::segments_of_triangles(&self.inverted, indices, map, &mut scratch.outline);
+        let drawn: Vec<u32> = self
+            .inverted
+            .iter()
+            .copied()
+            .step_by(self.thinning)
+            .collect();
+        outline::segments_of_triangles(&drawn, indices, map, &mut scratch.outline);
         gpu::with(|gpu| {
             gpu.set_map(&MapData {
                 corners: &scratch.corners,
                 distortions: &scratch.corner_distortions,
-                inverted: &scratch.inverted_corners,
+                order: &scratch.order,
                 outline: &scratch.outline,
                 boundary,
             });

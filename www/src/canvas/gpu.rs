@@ -62,11 +62,11 @@ pub struct Gpu {
     normals: WebGlBuffer,
     maps: WebGlBuffer,
     distortions: WebGlBuffer,
-    inverted: WebGlBuffer,
+    order: WebGlBuffer,
     seam_points: WebGlBuffer,
     outline_points: WebGlBuffer,
     corners: i32,
-    inverted_corners: i32,
+    painted_corners: i32,
     seam_count: i32,
     boundary_count: i32,
     outline_count: i32,
@@ -78,8 +78,8 @@ pub struct MapData<'a> {
     pub corners: &'a [f32],
     /// One float a corner; negative where inverted.
     pub distortions: &'a [f32],
-    /// Corner indices of the inverted triangles.
-    pub inverted: &'a [u32],
+    /// Corners in painting order.
+    pub order: &'a [u32],
     /// Boundary segments, then outlines of inverted triangles: x y x y.
     pub outline: &'a [f32],
     /// How many floats of `outline` are boundary.
@@ -118,11 +118,11 @@ impl Gpu {
             normals: buffer()?,
             maps: buffer()?,
             distortions: buffer()?,
-            inverted: buffer()?,
+            order: buffer()?,
             seam_points: buffer()?,
             outline_points: buffer()?,
             corners: 0,
-            inverted_corners: 0,
+            painted_corners: 0,
             seam_count: 0,
             boundary_count: 0,
             outline_count: 0,
@@ -146,7 +146,7 @@ impl Gpu {
         attribute(&self.normals, 1, 3);
         attribute(&self.maps, 2, 2);
         attribute(&self.distortions, 3, 1);
-        gl.bind_buffer(Gl::ELEMENT_ARRAY_BUFFER, Some(&self.inverted));
+        gl.bind_buffer(Gl::ELEMENT_ARRAY_BUFFER, Some(&self.order));
         gl.bind_vertex_array(Some(&self.seam));
         attribute(&self.seam_points, 0, 3);
         gl.bind_vertex_array(Some(&self.outline));
@@ -196,7 +196,7 @@ impl Gpu {
         self.seam_count = (seam.len() / 3) as i32;
         (
             self.corners,
-            self.inverted_corners,
+            self.painted_corners,
             self.outline_count,
             self.boundary_count,
         ) = (0, 0, 0, 0);
@@ -210,12 +210,12 @@ impl Gpu {
         self.gl.bind_vertex_array(Some(&self.triangles));
         self.gl.buffer_data_with_u8_array(
             Gl::ELEMENT_ARRAY_BUFFER,
-            bytemuck::cast_slice(map.inverted),
+            bytemuck::cast_slice(map.order),
             Gl::DYNAMIC_DRAW,
         );
         self.gl.bind_vertex_array(None);
         self.corners = map.distortions.len() as i32;
-        self.inverted_corners = map.inverted.len() as i32;
+        self.painted_corners = map.order.len() as i32;
         self.boundary_count = (map.boundary / 2) as i32;
         self.outline_count = (map.outline.len() / 2) as i32;
     }
@@ -256,10 +256,7 @@ impl Gpu {
         gl.disable(Gl::DEPTH_TEST);
         self.begin(&self.map, matrix, look);
         gl.bind_vertex_array(Some(&self.triangles));
-        gl.draw_arrays(Gl::TRIANGLES, 0, self.corners);
-        if self.inverted_corners > 0 {
-            gl.draw_elements_with_i32(Gl::TRIANGLES, self.inverted_corners, Gl::UNSIGNED_INT, 0);
-        }
+        gl.draw_elements_with_i32(Gl::TRIANGLES, self.painted_corners, Gl::UNSIGNED_INT, 0);
         let edge = if look.theme.dark {
             look.theme.ink
         } else {

@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 use glam::{Mat4, Vec2, Vec3};
 
-use super::bench::Bench;
+use super::bench::{Bench, MOST_LAYERS};
 use super::{gpu, style};
 use crate::colour::{self, DISTORTION_END, VERMILION};
 use crate::distortion::{corners_of, triangle_at};
@@ -66,7 +66,13 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     } else {
         "double-click to fit".into()
     };
-    let dropped = if bench.shown_map == bench.shown {
+    let dropped = if bench.thinning > 1 && bench.pan.follows {
+        format!(
+            "1 in {} triangles drawn: it covers itself {}-fold",
+            bench.thinning,
+            MOST_LAYERS * bench.thinning
+        )
+    } else if bench.shown_map == bench.shown {
         away
     } else {
         format!(
