@@ -10,16 +10,14 @@
 //! See `ARCHITECTURE.md` for what lives where and why.
 
 pub mod certificate;
-pub mod embedding;
 pub mod energy;
 mod error;
 pub mod geometry;
 pub mod linalg;
-pub mod local_global;
 pub mod mesh;
+mod parallel;
 pub mod optim;
 pub mod parameterization;
 pub mod space;
-pub mod wrapd;
 
 pub use error::Error;
