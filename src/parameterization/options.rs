@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Rotation-aware ADMM with dynamic reweighting (Brown & Narain 2021).
@@ -27,6 +28,7 @@ pub enum Method {
 
 /// The energy an ADMM method minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum EnergyKind {
     /// ψ = σ₁² + σ₁⁻² + σ₂² + σ₂⁻²; reported as ¼ Σ A (ψ − 4) + 1, so an isometry has 1.
@@ -38,6 +40,7 @@ pub enum EnergyKind {
 
 /// Where an iterative method starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Harmonic, and Tutte where harmonic has flips (the paper's).
@@ -57,6 +60,7 @@ pub enum Start {
 
 /// What to do with a surface that is not a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum CutPolicy {
     /// Cut it to a disk along short seams.
@@ -68,6 +72,7 @@ pub enum CutPolicy {
 
 /// All options of a parameterization; `Default` is the paper's choice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase", default, deny_unknown_fields)]
 pub struct ParameterizationOptions {
     /// The method.
