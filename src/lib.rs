@@ -15,9 +15,10 @@ pub mod energy;
 mod error;
 pub mod geometry;
 pub mod linalg;
+pub mod local_global;
 pub mod mesh;
-mod parallel;
 pub mod optim;
+mod parallel;
 pub mod parameterization;
 pub mod space;
 #[cfg(target_arch = "wasm32")]

@@ -42,7 +42,9 @@ fn weighted(
         map[v as usize] = p;
         unknown[v as usize] = FIXED;
     }
-    let free: Vec<u32> = (0..n as u32).filter(|&v| unknown[v as usize] != FIXED).collect();
+    let free: Vec<u32> = (0..n as u32)
+        .filter(|&v| unknown[v as usize] != FIXED)
+        .collect();
     for (k, &v) in free.iter().enumerate() {
         unknown[v as usize] = k as u32;
     }

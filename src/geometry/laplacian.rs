@@ -7,8 +7,7 @@ use super::RestShape;
 pub fn cotangent_weights(rest: &RestShape) -> Vec<[f64; 3]> {
     (0..rest.len())
         .map(|e| {
-            [(1, 2), (2, 0), (0, 1)]
-                .map(|(i, j)| -rest.measure[e] * rest.hat_product(e, i, j))
+            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| -rest.measure[e] * rest.hat_product(e, i, j))
         })
         .collect()
 }
