@@ -15,6 +15,8 @@ type Handlers = { [K in CallName]: (args: Calls[K][0]) => Calls[K][1] | Promise<
 interface Run {
   acknowledged: boolean;
   cancelled: boolean;
+  /** Called when a frame was taken. */
+  taken?: () => void;
 }
 
 /** Lets messages in between two steps. */
@@ -154,7 +156,10 @@ function serve(port: Port): void {
           if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
         }
         const last: Step = solver.frame();
-        if (reports.length) port.postMessage({ run: runId, frame: last, reports });
+        if (reports.length) {
+          if (!run.acknowledged) await new Promise<void>((resolve) => (run.taken = resolve));
+          port.postMessage({ run: runId, frame: last, reports });
+        }
         return run.cancelled && last.status === 'running' ? { ...last, status: 'cancelled' } : last;
       } finally {
         runs.delete(runId);
@@ -175,7 +180,10 @@ function serve(port: Port): void {
   port.listen(async (message) => {
     if ('acknowledge' in message) {
       const run = runs.get(message.acknowledge);
-      if (run) run.acknowledged = true;
+      if (run) {
+        run.acknowledged = true;
+        run.taken?.();
+      }
     } else if ('cancel' in message) {
       const run = runs.get(message.cancel);
       if (run) run.cancelled = true;
