@@ -61,13 +61,13 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let elimination = Elimination::new(rest, n, problem.pins);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
-        let Elimination { slot, free } = elimination;
         matrix.fill(|_| E::REST_STIFFNESS);
-        let mut factor = Cholesky::analyze(matrix.matrix())?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
+        let Elimination { slot, free, .. } = elimination;
         let blocks = build_blocks::<S, C, E>(rest, &slot);
         let corners_per_block = (rest.stretches + 1) * S::DIM * BLOCK;
         let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
@@ -217,7 +217,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         loop {
             let mut slope =
                 self.history
-                    .direction(&self.factor, S::DIM, &self.gradient, &mut self.direction);
+                    .direction(&mut self.factor, S::DIM, &self.gradient, &mut self.direction);
             if !(slope < 0.0) {
                 self.history.clear();
                 self.direction
