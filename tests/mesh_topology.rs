@@ -188,7 +188,7 @@ fn faces_are_turned_to_agree() {
     let mut wild = both(&clean, &generate(Shape::Terrain, 300));
     let mut random = mesh_common::Random(3);
     for simplex in &mut wild.simplices {
-        if random.next() % 2 == 0 {
+        if random.next().is_multiple_of(2) {
             simplex.swap(1, 2);
         }
     }
