@@ -18,6 +18,7 @@ pub mod linalg;
 pub mod local_global;
 pub mod mesh;
 pub mod optim;
+mod parallel;
 pub mod parameterization;
 pub mod space;
 pub mod wrapd;

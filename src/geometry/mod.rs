@@ -1,1 +1,7 @@
-//! To be furnished.
+//! Rest shapes, deformation gradients and Laplacians.
+
+mod laplacian;
+mod rest;
+
+pub use laplacian::{cotangent_weights, uniform_weights};
+pub use rest::{RestShape, surface_area, triangle_rest};

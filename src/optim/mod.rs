@@ -1,6 +1,7 @@
 //! What every iterative solver shares: status, reports, cancellation, errors.
 
 mod error;
+pub mod lbfgs;
 mod solver;
 
 pub use error::{BuildError, SolveError};

@@ -1,0 +1,159 @@
+//! Assembly of symmetric matrices: the pattern once, the values often.
+
+use nalgebra_sparse::CscMatrix;
+use nalgebra_sparse::pattern::SparsityPattern;
+
+/// A symmetric matrix as a sum of small element matrices on a fixed pattern, of which the lower
+/// triangle is stored.
+///
+/// Each stored entry knows the contributions that make it up, so that refilling the values needs no
+/// search, can be done in parallel and adds in the same order always.
+#[derive(Debug, Clone)]
+pub struct SymmetricAssembly {
+    /// Lower triangle, diagonal first in each column.
+    matrix: CscMatrix<f64>,
+    /// Where each entry's contributions begin; length: entries + 1.
+    begin: Vec<u32>,
+    /// The contributions, as indices into the list handed to `new`.
+    contribution: Vec<u32>,
+}
+
+impl SymmetricAssembly {
+    /// The pattern of `triplets` (row, column), either triangle, on n×n. A contribution with
+    /// row < column is mirrored; both (i, j) and (j, i) must not be given for the same entry.
+    /// Entries of a row or column ≥ n are left out (fixed unknowns). The diagonal is always stored.
+    pub fn new(n: usize, triplets: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+        let keep = |&(_, (i, j)): &(usize, (u32, u32))| (i as usize) < n && (j as usize) < n;
+        // counting sort by column, then by row: linear and independent of any hash
+        let mut by_row = vec![0u32; n + 1];
+        let sorted = |counts: &mut Vec<u32>,
+                      key: &dyn Fn(u32, u32) -> u32,
+                      order: &[u32],
+                      list: &[(u32, u32)]| {
+            counts.iter_mut().for_each(|c| *c = 0);
+            for &(i, j) in list {
+                counts[key(i, j) as usize + 1] += 1;
+            }
+            for k in 0..n {
+                counts[k + 1] += counts[k];
+            }
+            let mut out = vec![0u32; list.len()];
+            for &t in order {
+                let (i, j) = list[t as usize];
+                let slot = &mut counts[key(i, j) as usize];
+                out[*slot as usize] = t;
+                *slot += 1;
+            }
+            out
+        };
+        let mut list: Vec<(u32, u32)> = Vec::new();
+        let mut origin: Vec<u32> = Vec::new();
+        for (t, (i, j)) in triplets.enumerate().filter(keep) {
+            list.push((i.max(j), i.min(j)));
+            origin.push(t as u32);
+        }
+        let identity: Vec<u32> = (0..list.len() as u32).collect();
+        let order = sorted(&mut by_row, &|i, _| i, &identity, &list);
+        let order = sorted(&mut by_row, &|_, j| j, &order, &list);
+
+        let mut offsets = Vec::with_capacity(n + 1);
+        let mut rows: Vec<usize> = Vec::new();
+        let mut begin = vec![0u32];
+        let mut contribution = Vec::with_capacity(order.len());
+        offsets.push(0);
+        let mut next = 0;
+        for column in 0..n {
+            rows.push(column);
+            while next < order.len() {
+                let (i, j) = list[order[next] as usize];
+                if j as usize != column {
+                    break;
+                }
+                if i as usize != rows[rows.len() - 1] {
+                    begin.push(contribution.len() as u32);
+                    rows.push(i as usize);
+                }
+                contribution.push(origin[order[next] as usize]);
+                next += 1;
+            }
+            begin.push(contribution.len() as u32);
+            offsets.push(rows.len());
+        }
+        let entries = rows.len();
+        let pattern = SparsityPattern::try_from_offsets_and_indices(n, n, offsets, rows)
+            .expect("columns are sorted and within range by construction");
+        let matrix = CscMatrix::try_from_pattern_and_values(pattern, vec![0.0; entries])
+            .expect("one value an entry");
+        Self {
+            matrix,
+            begin,
+            contribution,
+        }
+    }
+
+    /// The matrix: its lower triangle by columns.
+    pub fn matrix(&self) -> &CscMatrix<f64> {
+        &self.matrix
+    }
+
+    /// Sets every entry to the sum of `value(contribution)` over its contributions, in the order in
+    /// which they were given to `new`.
+    pub fn fill(&mut self, value: impl Fn(usize) -> f64) {
+        for (entry, target) in self.matrix.values_mut().iter_mut().enumerate() {
+            let range = self.begin[entry] as usize..self.begin[entry + 1] as usize;
+            *target = self.contribution[range]
+                .iter()
+                .fold(0.0, |sum, &c| sum + value(c as usize));
+        }
+    }
+}
+
+/// A matrix Σ_e w_e K_e with constant element matrices K_e and varying scalar weights w_e: the
+/// system matrix (5a) of ADMM.
+#[derive(Debug, Clone)]
+pub struct WeightedSum {
+    assembly: SymmetricAssembly,
+    /// Coefficient and element of each contribution, in the assembly's order.
+    coefficient: Vec<(f64, u32)>,
+}
+
+impl WeightedSum {
+    /// From the contributions (row, column, element, coefficient); rules as in
+    /// [`SymmetricAssembly::new`].
+    pub fn new(n: usize, contributions: &[(u32, u32, u32, f64)]) -> Self {
+        let mut assembly =
+            SymmetricAssembly::new(n, contributions.iter().map(|&(i, j, _, _)| (i, j)));
+        let coefficient = assembly
+            .contribution
+            .iter()
+            .map(|&c| {
+                let (_, _, element, k) = contributions[c as usize];
+                (k, element)
+            })
+            .collect();
+        // from here on contributions are numbered in the order in which they are read
+        assembly.contribution = Vec::new();
+        Self {
+            assembly,
+            coefficient,
+        }
+    }
+
+    /// The matrix: its lower triangle by columns.
+    pub fn matrix(&self) -> &CscMatrix<f64> {
+        self.assembly.matrix()
+    }
+
+    /// Sets the values for these element weights.
+    pub fn fill(&mut self, weights: impl Fn(usize) -> f64) {
+        let begin = &self.assembly.begin;
+        for (entry, target) in self.assembly.matrix.values_mut().iter_mut().enumerate() {
+            let range = begin[entry] as usize..begin[entry + 1] as usize;
+            *target = self.coefficient[range]
+                .iter()
+                .fold(0.0, |sum, &(k, element)| {
+                    sum + k * weights(element as usize)
+                });
+        }
+    }
+}

@@ -1,0 +1,322 @@
+//! Sparse Cholesky: faer behind one small type.
+//!
+//! The unknowns are expected in elimination order already ([`Cholesky::order`] gives it), so that no
+//! solve permutes. The factor is computed by supernodes, which is fastest to refactor, and copied
+//! without their padding zeros into plain columns, which is fastest to solve with when, as on
+//! surfaces, supernodes are small.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, supernodal,
+};
+use faer::sparse::linalg::{SupernodalThreshold, amd};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Par, Side};
+use nalgebra_sparse::CscMatrix;
+
+use crate::optim::BuildError;
+
+/// A pivot was not positive: the matrix is not positive definite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotPositiveDefinite {
+    /// The unknown (in elimination order) whose pivot failed.
+    pub pivot: usize,
+}
+
+/// The factor L Lᵀ of a symmetric matrix with a fixed pattern.
+pub struct Cholesky {
+    symbolic: SymbolicCholesky<usize>,
+    /// Supernodal values.
+    blocks: Vec<f64>,
+    workspace: MemBuffer,
+    /// L by columns, diagonal first, without the supernodes' zeros.
+    column_begin: Vec<u32>,
+    rows: Vec<u32>,
+    values: Vec<f64>,
+    /// Reciprocal diagonal.
+    inverse_diagonal: Vec<f64>,
+}
+
+/// The most bytes a factor may take: what a 32-bit address space can give.
+const MEMORY_LIMIT: u64 = 1 << 31;
+
+impl Cholesky {
+    /// The fill-reducing elimination order (approximate minimum degree, Amestoy et al. 1996) of a
+    /// symmetric pattern given by its edges: `order[k]` is the unknown eliminated k-th.
+    pub fn order(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Vec<u32> {
+        let assembly = super::SymmetricAssembly::new(n, edges);
+        let pattern = assembly.matrix().pattern();
+        let symbolic = SymbolicSparseColMatRef::new_checked(
+            n,
+            n,
+            pattern.major_offsets(),
+            None,
+            pattern.minor_indices(),
+        );
+        let mut forward = vec![0usize; n];
+        let mut inverse = vec![0usize; n];
+        let scratch = amd::order_scratch::<usize>(n, pattern.nnz());
+        let mut buffer = MemBuffer::new(scratch);
+        match amd::order(
+            &mut forward,
+            &mut inverse,
+            symbolic,
+            amd::Control::default(),
+            MemStack::new(&mut buffer),
+        ) {
+            Ok(_) => forward.iter().map(|&k| k as u32).collect(),
+            // only an index overflow can fail here, and 32-bit meshes cannot cause one
+            Err(_) => (0..n as u32).collect(),
+        }
+    }
+
+    /// Analyses the pattern of `lower` (lower triangle, unknowns in elimination order).
+    ///
+    /// # Errors
+    /// `TooLarge` before anything is allocated that a 32-bit memory cannot hold.
+    pub fn analyze(lower: &CscMatrix<f64>) -> Result<Self, BuildError> {
+        let n = lower.ncols();
+        // faer analyses upper triangles: the transpose of ours
+        let upper = lower.transpose();
+        let symbolic = faer::sparse::linalg::cholesky::factorize_symbolic_cholesky(
+            symbolic_of(&upper),
+            Side::Upper,
+            SymmetricOrdering::Identity,
+            CholeskySymbolicParams {
+                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+                ..Default::default()
+            },
+        )
+        .map_err(|_| BuildError::TooLarge {
+            bytes: u64::MAX,
+            limit: MEMORY_LIMIT,
+        })?;
+        let bytes = 2 * 8 * symbolic.len_val() as u64;
+        if bytes > MEMORY_LIMIT {
+            return Err(BuildError::TooLarge {
+                bytes,
+                limit: MEMORY_LIMIT,
+            });
+        }
+        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+            blocks_of(&symbolic),
+            Par::Seq,
+            Default::default(),
+        );
+        let blocks = vec![0.0; symbolic.len_val()];
+        let mut this = Self {
+            symbolic,
+            blocks,
+            workspace: MemBuffer::new(scratch),
+            column_begin: Vec::new(),
+            rows: Vec::new(),
+            values: Vec::new(),
+            inverse_diagonal: vec![0.0; n],
+        };
+        this.build_columns(&upper);
+        Ok(this)
+    }
+
+    /// Number of unknowns.
+    pub fn dimension(&self) -> usize {
+        self.inverse_diagonal.len()
+    }
+
+    /// Number of stored entries of L.
+    pub fn factor_entries(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The exact pattern of L, column by column, from the elimination tree: row i of L is the union
+    /// of the tree paths from the entries of row i of A up to i (Liu 1990).
+    fn build_columns(&mut self, upper: &CscMatrix<f64>) {
+        let n = upper.ncols();
+        const NONE: u32 = u32::MAX;
+        let mut parent = vec![NONE; n];
+        let mut ancestor = vec![NONE; n];
+        for i in 0..n {
+            for &start in upper.col(i).row_indices() {
+                let mut j = start as u32;
+                while (j as usize) < i {
+                    let next = ancestor[j as usize];
+                    ancestor[j as usize] = i as u32;
+                    if next == NONE {
+                        parent[j as usize] = i as u32;
+                        break;
+                    }
+                    j = next;
+                }
+            }
+        }
+        let mut mark = vec![NONE; n];
+        let mut count = vec![1u32; n];
+        let mut visit = |each: &mut dyn FnMut(usize, usize)| {
+            mark.iter_mut().for_each(|m| *m = NONE);
+            for i in 0..n {
+                mark[i] = i as u32;
+                for &start in upper.col(i).row_indices() {
+                    let mut j = start;
+                    while j < i && mark[j] != i as u32 {
+                        mark[j] = i as u32;
+                        each(i, j);
+                        j = parent[j] as usize;
+                    }
+                }
+            }
+        };
+        visit(&mut |_, j| count[j] += 1);
+        let mut begin = Vec::with_capacity(n + 1);
+        begin.push(0u32);
+        for &c in &count {
+            begin.push(begin[begin.len() - 1] + c);
+        }
+        let mut rows = vec![0u32; begin[n] as usize];
+        let mut next: Vec<u32> = begin[..n].to_vec();
+        for (j, slot) in next.iter_mut().enumerate() {
+            rows[*slot as usize] = j as u32;
+            *slot += 1;
+        }
+        visit(&mut |i, j| {
+            rows[next[j] as usize] = i as u32;
+            next[j] += 1;
+        });
+        self.values = vec![0.0; rows.len()];
+        self.rows = rows;
+        self.column_begin = begin;
+    }
+
+    /// Factors `lower`, whose pattern must be the analysed one. Allocates nothing.
+    ///
+    /// # Errors
+    /// The first pivot that is not positive; the factor is then unusable until the next success.
+    pub fn factorize(&mut self, lower: &CscMatrix<f64>) -> Result<(), NotPositiveDefinite> {
+        let blocks = blocks_of(&self.symbolic);
+        let matrix = SparseColMatRef::new(symbolic_of(lower), lower.values());
+        supernodal::factorize_supernodal_numeric_llt::<usize, f64>(
+            &mut self.blocks,
+            matrix,
+            LltRegularization::default(),
+            blocks,
+            Par::Seq,
+            MemStack::new(&mut self.workspace),
+            Default::default(),
+        )
+        .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { pivot: index })?;
+        self.copy_columns()
+    }
+
+    /// Copies the supernodes into columns, dropping their padding.
+    fn copy_columns(&mut self) -> Result<(), NotPositiveDefinite> {
+        let symbolic = blocks_of(&self.symbolic);
+        let factor = supernodal::SupernodalLltRef::new(symbolic, &self.blocks[..]);
+        for s in 0..symbolic.n_supernodes() {
+            let node = factor.supernode(s);
+            let (start, pattern, block) = (node.start(), node.pattern(), node.val());
+            let width = block.ncols();
+            for local in 0..width {
+                let j = start + local;
+                let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
+                let rows = &self.rows[range.clone()];
+                let values = &mut self.values[range];
+                let column = block.col(local);
+                let column = column
+                    .try_as_col_major()
+                    .map(|c| c.as_slice())
+                    .unwrap_or(&[]);
+                if column.is_empty() {
+                    return Err(NotPositiveDefinite { pivot: j });
+                }
+                // both lists are sorted; the supernode's may have more
+                let mut at = 0;
+                for (&row, value) in rows.iter().zip(values.iter_mut()) {
+                    let row = row as usize;
+                    if row < start + width {
+                        *value = column[row - start];
+                    } else {
+                        while pattern[at] < row {
+                            at += 1;
+                        }
+                        *value = column[width + at];
+                    }
+                }
+                let diagonal = values[0];
+                if !(diagonal > 0.0 && diagonal.is_finite()) {
+                    return Err(NotPositiveDefinite { pivot: j });
+                }
+                self.inverse_diagonal[j] = diagonal.recip();
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves A X = B in place for `columns` right-hand sides (1, 2 or 3), interleaved: n × columns,
+    /// row by row.
+    pub fn solve_in_place(&self, x: &mut [f64], columns: usize) {
+        match columns {
+            1 => self.solve_interleaved::<1>(x.as_chunks_mut().0),
+            2 => self.solve_interleaved::<2>(x.as_chunks_mut().0),
+            _ => self.solve_interleaved::<3>(x.as_chunks_mut().0),
+        }
+    }
+
+    fn solve_interleaved<const D: usize>(&self, x: &mut [[f64; D]]) {
+        debug_assert_eq!(x.len(), self.dimension());
+        let n = self.dimension();
+        for j in 0..n {
+            let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
+            let rows = &self.rows[range.clone()][1..];
+            let values = &self.values[range][1..];
+            let xj = x[j].map(|v| v * self.inverse_diagonal[j]);
+            x[j] = xj;
+            for (&row, &l) in rows.iter().zip(values) {
+                let target = &mut x[row as usize];
+                for d in 0..D {
+                    target[d] -= l * xj[d];
+                }
+            }
+        }
+        for j in (0..n).rev() {
+            let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
+            let rows = &self.rows[range.clone()][1..];
+            let values = &self.values[range][1..];
+            let mut even = x[j];
+            let mut odd = [0.0; D];
+            let mut pairs = rows.chunks_exact(2).zip(values.chunks_exact(2));
+            for (row, l) in &mut pairs {
+                let (a, b) = (&x[row[0] as usize], &x[row[1] as usize]);
+                for d in 0..D {
+                    even[d] -= l[0] * a[d];
+                    odd[d] -= l[1] * b[d];
+                }
+            }
+            if rows.len() % 2 == 1 {
+                let last = &x[rows[rows.len() - 1] as usize];
+                for d in 0..D {
+                    even[d] -= values[values.len() - 1] * last[d];
+                }
+            }
+            for d in 0..D {
+                x[j][d] = (even[d] + odd[d]) * self.inverse_diagonal[j];
+            }
+        }
+    }
+}
+
+fn blocks_of(symbolic: &SymbolicCholesky<usize>) -> &supernodal::SymbolicSupernodalCholesky<usize> {
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Supernodal(blocks) => blocks,
+        SymbolicCholeskyRaw::Simplicial(_) => unreachable!("supernodes were asked for"),
+    }
+}
+
+fn symbolic_of(matrix: &CscMatrix<f64>) -> SymbolicSparseColMatRef<'_, usize> {
+    let pattern = matrix.pattern();
+    SymbolicSparseColMatRef::new_checked(
+        matrix.nrows(),
+        matrix.ncols(),
+        pattern.major_offsets(),
+        None,
+        pattern.minor_indices(),
+    )
+}

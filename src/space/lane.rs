@@ -1,0 +1,201 @@
+//! Numbers the kernels compute with: one `f64`, a dual number, or a SIMD register of elements.
+//!
+//! Every per-element formula of the crate is written once, generic over [`Scalar`] (arithmetic only:
+//! also dual numbers, for the derivative tests) or [`Lane`] (with comparisons: `f64` or a register).
+//! Registers come from `pulp`, which picks AVX-512, AVX2 or simd128 at run time; none of the
+//! operations contracts to a fused multiply-add, so that every width gives the same bits.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+use pulp::Simd;
+
+/// Field arithmetic, and constants by [`Scalar::lift`].
+pub trait Scalar:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The constant `c`, of the same width as `self`.
+    fn lift(self, c: f64) -> Self;
+    /// 1/self.
+    #[inline(always)]
+    fn recip(self) -> Self {
+        self.lift(1.0) / self
+    }
+}
+
+/// A [`Scalar`] that can be compared: one element or several side by side.
+pub trait Lane: Scalar {
+    /// The result of a comparison.
+    type Mask: Copy;
+    /// √self.
+    fn sqrt(self) -> Self;
+    /// |self|.
+    fn abs(self) -> Self;
+    /// The smaller of the two.
+    fn min(self, other: Self) -> Self;
+    /// The larger of the two.
+    fn max(self, other: Self) -> Self;
+    /// self < other.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `yes` where the mask holds, else `no`.
+    fn select(self, mask: Self::Mask, yes: Self, no: Self) -> Self;
+    /// Does the mask hold anywhere?
+    fn any(self, mask: Self::Mask) -> bool;
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn lift(self, c: f64) -> f64 {
+        c
+    }
+}
+
+impl Lane for f64 {
+    type Mask = bool;
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn min(self, other: f64) -> f64 {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn lt(self, other: f64) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(self, mask: bool, yes: f64, no: f64) -> f64 {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn any(self, mask: bool) -> bool {
+        mask
+    }
+}
+
+/// A SIMD register of `f64`, one lane an element.
+#[derive(Clone, Copy)]
+pub struct Pack<S: Simd> {
+    simd: S,
+    lanes: S::f64s,
+}
+
+impl<S: Simd> Pack<S> {
+    /// Lanes in the register.
+    pub const WIDTH: usize = core::mem::size_of::<S::f64s>() / core::mem::size_of::<f64>();
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, c: f64) -> Self {
+        Self {
+            simd,
+            lanes: simd.splat_f64s(c),
+        }
+    }
+    /// `WIDTH` numbers from the front of `source`.
+    #[inline(always)]
+    pub fn load(simd: S, source: &[f64]) -> Self {
+        let (head, _) = S::as_simd_f64s(source);
+        Self {
+            simd,
+            lanes: head[0],
+        }
+    }
+    /// Writes the lanes to the front of `target`.
+    #[inline(always)]
+    pub fn store(self, target: &mut [f64]) {
+        let (head, _) = S::as_mut_simd_f64s(target);
+        head[0] = self.lanes;
+    }
+}
+
+macro_rules! operator {
+    ($trait:ident, $name:ident, $op:ident) => {
+        impl<S: Simd> $trait for Pack<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self {
+                    simd: self.simd,
+                    lanes: self.simd.$op(self.lanes, other.lanes),
+                }
+            }
+        }
+    };
+}
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);
+
+impl<S: Simd> Neg for Pack<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            simd: self.simd,
+            lanes: self.simd.neg_f64s(self.lanes),
+        }
+    }
+}
+
+impl<S: Simd> Scalar for Pack<S> {
+    #[inline(always)]
+    fn lift(self, c: f64) -> Self {
+        Self::splat(self.simd, c)
+    }
+}
+
+impl<S: Simd> Lane for Pack<S> {
+    type Mask = S::m64s;
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self {
+            simd: self.simd,
+            lanes: self.simd.sqrt_f64s(self.lanes),
+        }
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self {
+            simd: self.simd,
+            lanes: self.simd.abs_f64s(self.lanes),
+        }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // by comparison, not by the hardware's minimum: those differ between targets on NaN and ±0
+        self.select(self.lt(other), self, other)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.select(other.lt(self), self, other)
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> S::m64s {
+        self.simd.less_than_f64s(self.lanes, other.lanes)
+    }
+    #[inline(always)]
+    fn select(self, mask: S::m64s, yes: Self, no: Self) -> Self {
+        Self {
+            simd: self.simd,
+            lanes: self.simd.select_f64s(mask, yes.lanes, no.lanes),
+        }
+    }
+    #[inline(always)]
+    fn any(self, mask: S::m64s) -> bool {
+        self.simd.first_true_m64s(mask) < Self::WIDTH
+    }
+}
