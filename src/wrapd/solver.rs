@@ -275,7 +275,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let clock = Instant::now();
         let clamp = match self.options.reweighting {
-            Some(r) if k >= r.delay => [r.least, r.most_at(k)],
+            Some(r) if k >= r.delay => [r.least, r.most_at(k + 1 - r.delay)],
             _ => [1.0, 1.0],
         }
         .map(|beta| beta * E::REST_STIFFNESS);
