@@ -40,9 +40,9 @@ async function buildOne(threads, force) {
   rmSync(join(root, folder), { recursive: true, force: true });
   const args = [
     'build', '.', '--release', '--target', 'web', '--mode', 'no-install', '--no-opt', '--no-pack',
-    '--out-dir', folder, '--out-name', 'foldfree', '--', ...buildStd,
+    '--out-dir', folder, '--out-name', 'foldfree', '--',
+    ...buildStd, '--no-default-features', ...(threads ? ['--features', 'threads'] : []),
   ];
-  if (threads) args.push('--features', 'threads');
   await run(pack, args, {
     env, label: `building wasm (${name})`, estimate: '2 minutes', log: join(tools, 'logs', `wasm-${name}.log`),
   });

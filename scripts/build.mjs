@@ -3,7 +3,7 @@ import { fileURLToPath } from 'node:url';
 import { installDependencies } from './lib/dependencies.mjs';
 import { main, say } from './lib/progress.mjs';
 import { buildPackage } from './build-wasm.mjs';
-import { buildPage } from './build-page.mjs';
+import { buildPage } from '../www/build.mjs';
 
 /** Builds what is out of date. */
 export async function build(options) {

@@ -196,7 +196,9 @@ export async function wasmEnvironment({ threads = false, extraRustFlags = [] } =
     CARGO_ENCODED_RUSTFLAGS: undefined,
     RUSTFLAGS: undefined,
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: [...wasmFlags(threads), ...extraRustFlags].join(' '),
-    CARGO_TARGET_DIR: join(root, 'target', threads ? 'wasm-threads' : 'wasm'),
+    CARGO_TARGET_DIR: join(root, 'target', 'wasm'),
+    CARGO_PROFILE_RELEASE_DEBUG: '0',
+    CARGO_PROFILE_RELEASE_LTO: 'fat',
   };
   for (const key of Object.keys(env)) if (env[key] === undefined) delete env[key];
   return env;

@@ -1,6 +1,7 @@
 // The synchronous API over one instance of the wasm module. The worker and `foldfree/core` share it.
 import type * as Bindings from './single/foldfree.js';
 import { FoldfreeError, toFoldfreeError } from './error.js';
+import { fileBytes, isArrays, needFormat } from './input.js';
 import {
   dispose,
   type Certificate, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
@@ -164,9 +165,8 @@ export class Core {
   mesh(data: MeshData, format?: MeshFormat): CoreMesh {
     const { WasmMesh } = this.#bindings;
     if (isArrays(data)) return guard(() => new CoreMesh(WasmMesh.fromArrays(data.positions, data.indices)));
-    if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "obj" or "off" is needed');
-    const bytes = typeof data === 'string' ? new TextEncoder().encode(data) : new Uint8Array(data);
-    return guard(() => new CoreMesh(WasmMesh.fromBytes(bytes, format)));
+    const known = needFormat(format);
+    return guard(() => new CoreMesh(WasmMesh.fromBytes(fileBytes(data), known)));
   }
 
   /** Generates a sample shape of about so many triangles. */
@@ -190,20 +190,11 @@ export class Core {
 
   /** All options with the values they have when left out. */
   defaultOptions(): Required<ParameterizeOptions> {
-    return guard(() => this.#bindings.defaultOptions());
+    return guard(() => this.#bindings.defaultOptions() as Required<ParameterizeOptions>);
   }
 
   /** Bytes of wasm memory; it never shrinks, so this is also its peak. */
   get memoryBytes(): number {
     return this.#bindings.memoryBytes();
   }
-}
-
-function isArrays(data: MeshData): data is MeshArrays {
-  if (typeof data === 'string' || data instanceof Uint8Array || data instanceof ArrayBuffer) return false;
-  if (data?.positions instanceof Float64Array && data.indices instanceof Uint32Array) return true;
-  throw new FoldfreeError(
-    'invalid-argument',
-    'mesh: bytes, text, or { positions: Float64Array, indices: Uint32Array } is needed',
-  );
 }

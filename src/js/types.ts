@@ -7,7 +7,7 @@ export type {
 } from './single/foldfree.js';
 
 /** Options of `parameterize`; what is left out has the paper's value. */
-export type ParameterizeOptions = Partial<ParameterizationOptions>;
+export type ParameterizeOptions = ParameterizationOptions;
 
 /** File formats that can be read. */
 export type MeshFormat = 'obj' | 'off';

@@ -1,9 +1,11 @@
 //! The options of a parameterization, as a person names them.
 
+use crate::optim::BuildError;
 use serde::{Deserialize, Serialize};
 
 /// How the map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Rotation-aware ADMM with dynamic reweighting (Brown & Narain 2021).
@@ -27,6 +29,7 @@ pub enum Method {
 
 /// The energy an ADMM method minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum EnergyKind {
     /// ψ = σ₁² + σ₁⁻² + σ₂² + σ₂⁻²; reported as ¼ Σ A (ψ − 4) + 1, so an isometry has 1.
@@ -38,6 +41,7 @@ pub enum EnergyKind {
 
 /// Where an iterative method starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Harmonic, and Tutte where harmonic has flips (the paper's).
@@ -57,6 +61,7 @@ pub enum Start {
 
 /// What to do with a surface that is not a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum CutPolicy {
     /// Cut it to a disk along short seams.
@@ -68,6 +73,7 @@ pub enum CutPolicy {
 
 /// All options of a parameterization; `Default` is the paper's choice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase", default, deny_unknown_fields)]
 pub struct ParameterizationOptions {
     /// The method.
@@ -97,5 +103,21 @@ impl Default for ParameterizationOptions {
             max_iterations: 5000,
             seed: 1,
         }
+    }
+}
+
+impl ParameterizationOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// `InvalidOption` names the option.
+    pub fn validate(&self) -> Result<(), BuildError> {
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return Err(BuildError::InvalidOption {
+                option: "tolerance",
+                what: format!("{} is not a finite number of at least 0", self.tolerance),
+            });
+        }
+        Ok(())
     }
 }

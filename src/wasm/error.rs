@@ -2,6 +2,7 @@
 
 use crate::Error;
 use js_sys::{Object, Reflect};
+use std::sync::atomic::{AtomicU32, Ordering};
 use wasm_bindgen::prelude::*;
 
 /// What a fallible export returns.
@@ -49,10 +50,24 @@ extern "C" {
     fn post_message(this: &BroadcastChannel, message: &JsValue) -> Result<(), JsValue>;
 }
 
-/// Tells every client of this origin of a panic. In the threaded build a pool thread that panics
-/// leaves the thread that waits for it blocked for good, so only a broadcast can still be heard.
+/// The number by which this instance's client listens for panics; 0: nobody does.
+static INSTANCE: AtomicU32 = AtomicU32::new(0);
+
+/// Names this instance, so that its client hears of panics in any of its threads, on the
+/// `BroadcastChannel` `foldfree-panic-` + the number.
+#[wasm_bindgen(js_name = setInstance)]
+pub fn set_instance(instance: u32) {
+    INSTANCE.store(instance, Ordering::Relaxed);
+}
+
+/// Tells the client of a panic. In the threaded build a pool thread that panics leaves the thread
+/// that waits for it blocked for good, so only a broadcast can still be heard.
 pub(super) fn announce(message: &JsValue) {
-    if let Ok(channel) = BroadcastChannel::new("foldfree-panic") {
+    let instance = INSTANCE.load(Ordering::Relaxed);
+    if instance == 0 {
+        return;
+    }
+    if let Ok(channel) = BroadcastChannel::new(&format!("foldfree-panic-{instance}")) {
         let _ = channel.post_message(message);
     }
 }

@@ -116,6 +116,8 @@ impl WasmMesh {
 pub struct ShapeInfo {
     /// What `generate` takes.
     pub name: &'static str,
+    /// What people call it.
+    pub title: &'static str,
     /// One sentence.
     pub description: &'static str,
 }
@@ -127,6 +129,7 @@ pub fn shapes() -> Fallible<JsValue> {
         .iter()
         .map(|shape| ShapeInfo {
             name: shape.name(),
+            title: shape.title(),
             description: shape.describe(),
         })
         .collect();

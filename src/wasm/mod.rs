@@ -7,13 +7,13 @@
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod error;
-//mod mesh;
+mod mesh;
 mod options;
-//mod parameterization;
+mod parameterization;
 mod report;
 
-//pub use mesh::{WasmMesh, shapes};
-//pub use parameterization::{WasmParameterization, check_map};
+pub use mesh::{WasmMesh, shapes};
+pub use parameterization::{WasmParameterization, check_map};
 #[cfg(feature = "threads")]
 pub use wasm_bindgen_rayon::init_thread_pool;
 

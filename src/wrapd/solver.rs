@@ -2,8 +2,9 @@
 
 use super::block::{BLOCK, Block, BlockSums};
 use super::kernels::{Kernel, Pass};
-use super::{Coupling, WrapdOptions};
+use super::{Coupling, Elimination, Problem, WrapdOptions};
 use crate::energy::Energy;
+use crate::energy::total::relative_distortion;
 use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::{Lbfgs, dot};
@@ -15,15 +16,15 @@ use crate::space::Space;
 use core::marker::PhantomData;
 use web_time::Instant;
 
-/// What to solve: rest shapes, a start, and vertices held where they start.
-#[derive(Debug, Clone, Copy)]
-pub struct Problem<'a> {
-    /// Rest shapes; for reported energies their total measure should be 1.
-    pub rest: &'a RestShape,
-    /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
-    pub start: &'a [f64],
-    /// Vertices held at their start; at least one, so that the system is definite.
-    pub pins: &'a [u32],
+/// Which corner forces to add up.
+#[derive(Clone, Copy)]
+enum Forces {
+    /// The gradient of (11), into `gradient`.
+    Coupling,
+    /// The same, into `next_gradient`.
+    NextCoupling,
+    /// The gradient of the energy, into `direction`.
+    Energy,
 }
 
 /// ADMM on a splitting of F: WRAPD and its relatives, by coupling `C` and energy `E`.
@@ -32,7 +33,6 @@ pub struct Wrapd<S: Space, C, E> {
     energy: E,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
-    free: usize,
     blocks: Vec<Block>,
     sums: Vec<BlockSums>,
     forces: Vec<f64>,
@@ -68,61 +68,20 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         options.validate()?;
         let rest = problem.rest;
         let n = problem.start.len() / S::DIM;
-        validate::<S>(&problem)?;
+        problem.validate::<S>()?;
 
-        // slots: free vertices in elimination order, then pins
-        let mut pinned = vec![false; n];
-        problem.pins.iter().for_each(|&p| pinned[p as usize] = true);
-        let free_vertices: Vec<u32> = (0..n as u32).filter(|&v| !pinned[v as usize]).collect();
-        let free = free_vertices.len();
-        let mut slot = vec![0u32; n];
-        for (k, &v) in free_vertices.iter().enumerate() {
-            slot[v as usize] = k as u32;
-        }
-        let mut last = free as u32;
-        for v in (0..n).filter(|&v| pinned[v]) {
-            slot[v] = last;
-            last += 1;
-        }
-        let order = {
-            let slot = &slot;
-            Cholesky::order(
-                free,
-                rest.pairs()
-                    .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
-            )
-        };
-        for (k, &first) in order.iter().enumerate() {
-            slot[free_vertices[first as usize] as usize] = k as u32;
-        }
-
-        let contributions: Vec<(u32, u32, u32, f64)> = (0..rest.len())
-            .flat_map(|e| {
-                let slot = &slot;
-                let corners = rest.stretches + 1;
-                (0..corners).flat_map(move |a| {
-                    (0..=a).map(move |b| {
-                        let s = rest.simplex(e);
-                        (
-                            slot[s[a] as usize],
-                            slot[s[b] as usize],
-                            e as u32,
-                            rest.hat_product(e, a, b) * rest.measure[e],
-                        )
-                    })
-                })
-            })
-            .collect();
-        let mut matrix = WeightedSum::new(free, &contributions);
-        drop(contributions);
+        let elimination = Elimination::new(rest, n, problem.pins);
+        let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
         matrix.fill(|_| E::REST_STIFFNESS);
-        let mut factor = Cholesky::analyze(matrix.matrix())?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
+        let Elimination { slot, free, .. } = elimination;
         let blocks = build_blocks::<S, C, E>(rest, &slot);
-        let corners_per_block = (rest.stretches + 1) * S::DIM * BLOCK;
+        // forces of the coupling, then those of the energy
+        let corners_per_block = 2 * (rest.stretches + 1) * S::DIM * BLOCK;
         let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
         let mut x = vec![0.0; problem.start.len()];
         for v in 0..n {
@@ -134,7 +93,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             options,
             energy,
             slot,
-            free,
             sums: vec![BlockSums::default(); blocks.len()],
             forces: vec![0.0; corners_per_block * blocks.len()],
             blocks,
@@ -148,26 +106,18 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             matrix,
             factor,
             history: Lbfgs::new(options.history),
-            report: StepReport {
-                iteration: 0,
-                status: Status::Running,
-                energy: 0.0,
-                inverted: 0,
-                gradient_norm: 0.0,
-                smallest_sigma: 0.0,
-                largest_sigma: 0.0,
-                lbfgs_iterations: 0,
-                reweighted: false,
-                seconds: 0.0,
-                phases: Vec::new(),
-            },
+            report: StepReport::at_start(),
             was_injective: false,
             started: None,
             types: PhantomData,
         };
-        let sums = this.pass(Pass::Evaluate);
+        let sums = this.pass(Pass::Last);
         this.gather_gradient_norm();
         this.evaluate(sums);
+        if E::BARRIER && this.report.inverted > 0 {
+            // there is no Z yet whose energy could stand in
+            this.report.energy = f64::INFINITY;
+        }
         this.was_injective = this.report.inverted == 0;
         Ok(this)
     }
@@ -212,16 +162,27 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 
     /// Adds the corner forces up at the free vertices.
-    fn gather(forces: &[f64], corner_begin: &[u32], corners: &[u32], gradient: &mut [f64]) {
+    fn gather(&mut self, what: Forces) {
         const VERTICES: usize = 1024;
+        let (offset, gradient) = match what {
+            Forces::Coupling => (0, &mut self.gradient),
+            Forces::NextCoupling => (0, &mut self.next_gradient),
+            // the direction has served its purpose by then
+            Forces::Energy => (
+                self.forces.len() / self.blocks.len() / 2,
+                &mut self.direction,
+            ),
+        };
+        let (forces, begin, corners) = (&self.forces, &self.corner_begin, &self.corners);
         parallel::for_each_chunk(gradient, VERTICES * S::DIM, |chunk, out| {
             for (local, g) in out.chunks_exact_mut(S::DIM).enumerate() {
                 let v = chunk * VERTICES + local;
-                let range = corner_begin[v] as usize..corner_begin[v + 1] as usize;
+                let range = begin[v] as usize..begin[v + 1] as usize;
                 let mut sum = [0.0; 3];
                 for &corner in &corners[range] {
-                    for (i, s) in sum.iter_mut().enumerate().take(S::DIM) {
-                        *s += forces[corner as usize + i * BLOCK];
+                    let force = &forces[corner as usize + offset..][..S::DIM];
+                    for i in 0..S::DIM {
+                        sum[i] += force[i];
                     }
                 }
                 g.copy_from_slice(&sum[..S::DIM]);
@@ -229,15 +190,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         });
     }
 
-    /// After an `Evaluate` pass: the norm of the reported energy's gradient.
+    /// After a `Last` pass: the norm of the reported energy's gradient.
     fn gather_gradient_norm(&mut self) {
-        Self::gather(
-            &self.forces,
-            &self.corner_begin,
-            &self.corners,
-            &mut self.next_gradient,
-        );
-        let squared = dot(&self.next_gradient, &self.next_gradient);
+        self.gather(Forces::Energy);
+        let squared = dot(&self.direction, &self.direction);
         self.report.gradient_norm = E::SCALE * squared.sqrt();
     }
 
@@ -266,20 +222,15 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     /// The global step: L-BFGS on (11) until (17). Returns its iterations and the final evaluation.
     fn global_step(&mut self, lagrangian_change: f64) -> (usize, BlockSums) {
         let bound = S::KAPPA * lagrangian_change.abs();
-        let gather = |this: &mut Self, into_next: bool| {
-            let target = if into_next {
-                &mut this.next_gradient
-            } else {
-                &mut this.gradient
-            };
-            Self::gather(&this.forces, &this.corner_begin, &this.corners, target);
-        };
-        gather(self, false);
+        self.gather(Forces::Coupling);
         let mut count = 0;
         loop {
-            let mut slope =
-                self.history
-                    .direction(&self.factor, S::DIM, &self.gradient, &mut self.direction);
+            let mut slope = self.history.direction(
+                &mut self.factor,
+                S::DIM,
+                &self.gradient,
+                &mut self.direction,
+            );
             if !(slope < 0.0) {
                 self.history.clear();
                 self.direction
@@ -296,7 +247,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
             let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
             if !C::LINEAR {
-                gather(self, true);
+                self.gather(Forces::NextCoupling);
                 self.history
                     .push(&self.direction, &self.gradient, &self.next_gradient);
                 core::mem::swap(&mut self.gradient, &mut self.next_gradient);
@@ -337,7 +288,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let clock = Instant::now();
         let clamp = match self.options.reweighting {
-            Some(r) if k >= r.delay => [r.least, r.most_at(k)],
+            Some(r) if k >= r.delay => [r.least, r.most_at(k + 1 - r.delay)],
             _ => [1.0, 1.0],
         }
         .map(|beta| beta * E::REST_STIFFNESS);
@@ -388,7 +339,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             let s = s as usize * S::DIM;
             self.positions[v * S::DIM..(v + 1) * S::DIM].copy_from_slice(&self.x[s..s + S::DIM]);
         }
-        self.pass(Pass::Evaluate);
         self.gather_gradient_norm();
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
@@ -425,44 +375,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     pub fn factor_entries(&self) -> usize {
         self.factor.factor_entries()
     }
-}
-
-fn validate<S: Space>(problem: &Problem) -> Result<(), BuildError> {
-    let (rest, start) = (problem.rest, problem.start);
-    let n = start.len() / S::DIM;
-    let wrong = |argument, expected, found| {
-        Err(BuildError::WrongLength {
-            argument,
-            expected,
-            found,
-        })
-    };
-    if start.len() != n * S::DIM {
-        return wrong("start", n * S::DIM, start.len());
-    }
-    if rest.vertices.len() != rest.len() * (S::STRETCHES + 1) {
-        return wrong(
-            "rest.vertices",
-            rest.len() * (S::STRETCHES + 1),
-            rest.vertices.len(),
-        );
-    }
-    if rest.vertices.iter().any(|&v| v as usize >= n) {
-        return wrong("start", S::DIM, start.len());
-    }
-    if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
-        return Err(BuildError::InvalidOption {
-            option: "start",
-            what: format!("vertex {} is not finite", bad / S::DIM),
-        });
-    }
-    if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {
-        return Err(BuildError::InvalidOption {
-            option: "pins",
-            what: format!("needs at least one vertex, each below {n}"),
-        });
-    }
-    Ok(())
 }
 
 fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
@@ -520,7 +432,7 @@ fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u
     let mut list = vec![0u32; begin[free] as usize];
     for (i, s) in slots() {
         let (e, v) = (i / corners, i % corners);
-        let base = (e / BLOCK) * corners * S::DIM * BLOCK + v * S::DIM * BLOCK + e % BLOCK;
+        let base = ((2 * (e / BLOCK) * corners + v) * BLOCK + e % BLOCK) * S::DIM;
         list[next[s] as usize] = base as u32;
         next[s] += 1;
     }
@@ -549,12 +461,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
         for block in &self.blocks {
             for e in 0..block.len {
                 let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
-                let term = |s: f64| s * s + (s * s).recip();
-                inspection.distortion.push(if smallest > 0.0 {
-                    (0.25 * (term(largest) + term(smallest))) as f32
-                } else {
-                    f32::INFINITY
-                });
+                inspection
+                    .distortion
+                    .push(relative_distortion(&[largest, smallest]));
                 inspection
                     .weights
                     .push((block.stiffness[e] / E::REST_STIFFNESS) as f32);
