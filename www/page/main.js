@@ -356,6 +356,16 @@ async function changeSample() {
   await open(next, { busy: next.triangles > 10_000 ? 'Building the surface' : '' });
 }
 
+/** The library knows its samples best. */
+function listSamples(shapes) {
+  const options = [...$('sample').options];
+  for (const { name, title, description } of shapes) {
+    const option = options.find((o) => o.value === name) ?? new Option(title, name);
+    option.title = description;
+    if (!option.parentNode) $('sample').add(option);
+  }
+}
+
 async function openFile(file) {
   if (!whenReady(() => openFile(file))) return;
   setBusy(`Reading ${file.name}`);
@@ -476,6 +486,8 @@ async function begin() {
     setBusy('');
     return notice('The drawing board did not start', `${describe(error)} The page needs WebGL 2 and WebAssembly.`);
   }
+  if ([$('canvas'), document.body].every((e) => e !== document.activeElement)) document.activeElement.blur();
+  $('canvas').blur();
   board.theme(isDark());
   const still = matchMedia('(prefers-reduced-motion: reduce)');
   board.reducedMotion(still.matches);
@@ -499,6 +511,7 @@ async function begin() {
   try {
     const foldfree = await load({ onProgress: (loaded, total) => { if (!drawn) setBusy('Loading the solver', total ? loaded / total : undefined); } });
     foldfreeThreads = foldfree.threads;
+    listSamples(foldfree.shapes);
     session = new Session(foldfree);
   } catch (error) {
     setBusy('');
@@ -512,5 +525,12 @@ async function begin() {
   if (act) await act();
   else if (wanted.at) await steps(wanted.at);
 }
+
+// For the console, and for tests.
+globalThis.foldfreePage = {
+  get board() { return board?.canvas; },
+  get session() { return session; },
+  get shown() { return shown; },
+};
 
 begin();

@@ -24,14 +24,6 @@ pub fn segments_of_edges(edges: &[[u32; 2]], uv: &[f32], out: &mut Vec<f32>) {
     }
 }
 
-/// Segments of the outlines of `triangles` in a map.
-pub fn segments_of_triangles(triangles: &[u32], indices: &[u32], uv: &[f32], out: &mut Vec<f32>) {
-    for &t in triangles {
-        let [a, b, c] = [0, 1, 2].map(|k| indices[3 * t as usize + k]);
-        segments_of_edges(&[[a, b], [b, c], [c, a]], uv, out);
-    }
-}
-
 /// Corner values (three a triangle) from vertex values of `width` floats, for unindexed drawing.
 pub fn per_corner(indices: &[u32], values: &[f32], width: usize, out: &mut Vec<f32>) {
     out.clear();
@@ -139,9 +131,6 @@ mod tests {
         let mut out = Vec::new();
         segments_of_edges(&[[1, 0]], &[0.0, 1.0, 2.0, 3.0], &mut out);
         assert_eq!(out, [2.0, 3.0, 0.0, 1.0]);
-        out.clear();
-        segments_of_triangles(&[0], &[0, 1, 2], &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0], &mut out);
-        assert_eq!(out.len(), 12);
     }
 
     #[test]

@@ -105,7 +105,7 @@ struct Scratch {
     distortions: Vec<f32>,
     corner_distortions: Vec<f32>,
     corners: Vec<f32>,
-    outline: Vec<f32>,
+    boundary: Vec<f32>,
     order: Vec<u32>,
 }
 
@@ -247,23 +247,14 @@ impl Bench {
         outline::per_corner(indices, map, 2, &mut scratch.corners);
         self.thinning = outline::layers(indices, map).div_ceil(MOST_LAYERS).max(1);
         outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
-        scratch.outline.clear();
-        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.outline);
-        let boundary = scratch.outline.len();
-        let drawn: Vec<u32> = self
-            .inverted
-            .iter()
-            .copied()
-            .step_by(self.thinning)
-            .collect();
-        outline::segments_of_triangles(&drawn, indices, map, &mut scratch.outline);
+        scratch.boundary.clear();
+        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.boundary);
         gpu::with(|gpu| {
             gpu.set_map(&MapData {
                 corners: &scratch.corners,
                 distortions: &scratch.corner_distortions,
                 order: &scratch.order,
-                outline: &scratch.outline,
-                boundary,
+                boundary: &scratch.boundary,
             });
         });
     }

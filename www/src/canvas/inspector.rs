@@ -5,6 +5,7 @@ use eframe::egui::{self, Align2, Rect, Sense, Stroke, pos2, vec2};
 use super::bench::Bench;
 use super::style;
 use crate::colour::curve_style;
+use crate::history::{Phase, PhaseKind};
 use crate::scale::number;
 use crate::words::{citation, explain, method_name};
 
@@ -147,7 +148,8 @@ impl Column<'_> {
             &format!("{}, {}", method_name(method), citation(method)),
         );
         let total: f64 = record.phases.iter().map(|p| p.milliseconds).sum();
-        for phase in &record.phases {
+        let done = |p: &&Phase| p.count > 0 || p.kind != PhaseKind::Reweight;
+        for phase in record.phases.iter().filter(done) {
             let words = explain(method, phase.kind);
             let top = self.y;
             let line = self.line();

@@ -20,7 +20,7 @@ void main() {
     vec3 grey = mix(u_check_dark, u_check_light, check);
     vec3 c;
     if (v_distortion < 0.0) {
-        c = hatch();
+        c = inverted(v_edge);
     } else {
         vec3 tint = ramp(v_distortion);
         if (v_distortion > exp(u_end)) tint = clamped(tint);
