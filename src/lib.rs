@@ -15,8 +15,8 @@ mod error;
 pub mod geometry;
 pub mod linalg;
 pub mod mesh;
-mod parallel;
 pub mod optim;
+mod parallel;
 pub mod parameterization;
 pub mod space;
 

@@ -26,6 +26,7 @@
 //! triangle is inverted the map is [`Certificate::mirrored`]: it is as injective as its mirror image,
 //! and everything but `inverted` speaks of that mirror image (u negated).
 
+mod corners;
 mod crossings;
 mod distortion;
 mod predicates;
@@ -34,6 +35,7 @@ mod summary;
 mod surface;
 mod winding;
 
+pub use corners::CornerMap;
 pub use crossings::BoundaryCrossing;
 pub use predicates::orientation;
 pub use segments::CrossingKind;

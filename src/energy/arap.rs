@@ -32,9 +32,6 @@ impl Energy<Plane> for Arap {
     #[inline(always)]
     fn prox<L: Lane>(&self, p: [L; 2], k: L, _warm: [L; 2]) -> ([L; 2], u32) {
         let two = k.lift(2.0);
-        (
-            Components::from_fn(|i| (two + k * p.at(i)) / (two + k)),
-            1,
-        )
+        (Components::from_fn(|i| (two + k * p.at(i)) / (two + k)), 1)
     }
 }

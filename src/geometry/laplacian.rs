@@ -9,8 +9,7 @@ pub fn cotangent_weights(rest: &RestShape) -> Vec<[f64; 3]> {
         .map(|e| {
             let g = rest.hat_gradients(e);
             let area = rest.measure[e];
-            let edge =
-                |i: usize, j: usize| -area * (g[i][0] * g[j][0] + g[i][1] * g[j][1]);
+            let edge = |i: usize, j: usize| -area * (g[i][0] * g[j][0] + g[i][1] * g[j][1]);
             [edge(1, 2), edge(2, 0), edge(0, 1)]
         })
         .collect()

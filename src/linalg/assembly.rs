@@ -26,7 +26,10 @@ impl SymmetricAssembly {
         let keep = |&(_, (i, j)): &(usize, (u32, u32))| (i as usize) < n && (j as usize) < n;
         // counting sort by column, then by row: linear and independent of any hash
         let mut by_row = vec![0u32; n + 1];
-        let sorted = |counts: &mut Vec<u32>, key: &dyn Fn(u32, u32) -> u32, order: &[u32], list: &[(u32, u32)]| {
+        let sorted = |counts: &mut Vec<u32>,
+                      key: &dyn Fn(u32, u32) -> u32,
+                      order: &[u32],
+                      list: &[(u32, u32)]| {
             counts.iter_mut().for_each(|c| *c = 0);
             for &(i, j) in list {
                 counts[key(i, j) as usize + 1] += 1;
@@ -148,7 +151,9 @@ impl WeightedSum {
             let range = begin[entry] as usize..begin[entry + 1] as usize;
             *target = self.coefficient[range]
                 .iter()
-                .fold(0.0, |sum, &(k, element)| sum + k * weights(element as usize));
+                .fold(0.0, |sum, &(k, element)| {
+                    sum + k * weights(element as usize)
+                });
         }
     }
 }

@@ -303,9 +303,7 @@ impl Cholesky {
     }
 }
 
-fn blocks_of(
-    symbolic: &SymbolicCholesky<usize>,
-) -> &supernodal::SymbolicSupernodalCholesky<usize> {
+fn blocks_of(symbolic: &SymbolicCholesky<usize>) -> &supernodal::SymbolicSupernodalCholesky<usize> {
     match symbolic.raw() {
         SymbolicCholeskyRaw::Supernodal(blocks) => blocks,
         SymbolicCholeskyRaw::Simplicial(_) => unreachable!("supernodes were asked for"),

@@ -178,8 +178,12 @@ impl Lbfgs {
         pair.s.clear();
         pair.s.extend_from_slice(step);
         pair.y.clear();
-        pair.y
-            .extend(gradient_after.iter().zip(gradient_before).map(|(a, b)| a - b));
+        pair.y.extend(
+            gradient_after
+                .iter()
+                .zip(gradient_before)
+                .map(|(a, b)| a - b),
+        );
         let curvature = dot(&pair.s, &pair.y);
         let scale = dot(&pair.y, &pair.y).sqrt() * dot(&pair.s, &pair.s).sqrt();
         if curvature.is_nan() || curvature <= 1e-16 * scale || curvature == 0.0 {

@@ -74,8 +74,10 @@ pub trait Space: Copy + Send + Sync + 'static {
     /// Eigenvalues, largest first, and eigenvectors.
     fn eigen<L: Lane>(s: Self::Symmetric<L>) -> (Self::Sigma<L>, Self::Eigenframe<L>);
     /// The symmetric matrix with these eigenvalues.
-    fn from_eigen<L: Lane>(values: Self::Sigma<L>, frame: Self::Eigenframe<L>)
-    -> Self::Symmetric<L>;
+    fn from_eigen<L: Lane>(
+        values: Self::Sigma<L>,
+        frame: Self::Eigenframe<L>,
+    ) -> Self::Symmetric<L>;
     /// Signed singular values (a reflection is put on the last) and singular vectors.
     fn svd<L: Lane>(f: Self::Gradient<L>) -> (Self::Sigma<L>, Self::Singularframe<L>);
     /// The matrix with these singular values.
