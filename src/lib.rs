@@ -10,6 +10,7 @@
 //! See `ARCHITECTURE.md` for what lives where and why.
 
 pub mod certificate;
+pub mod embedding;
 pub mod energy;
 mod error;
 pub mod geometry;
@@ -19,5 +20,6 @@ pub mod optim;
 mod parallel;
 pub mod parameterization;
 pub mod space;
+pub mod wrapd;
 
 pub use error::Error;

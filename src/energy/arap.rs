@@ -9,6 +9,13 @@ use crate::space::{Components, Lane, Plane, Scalar};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Arap;
 
+/// One axis: (σ − 1)².
+#[inline(always)]
+fn term<T: Scalar>(s: T) -> T {
+    let d = s - s.lift(1.0);
+    d * d
+}
+
 impl Energy<Plane> for Arap {
     const BARRIER: bool = false;
     const ISOMETRY: f64 = 0.0;
@@ -18,12 +25,14 @@ impl Energy<Plane> for Arap {
 
     #[inline(always)]
     fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
-        let term = |s: T| (s - s.lift(1.0)) * (s - s.lift(1.0));
         term(sigma[0]) + term(sigma[1])
     }
     #[inline(always)]
     fn gradient<T: Scalar>(&self, sigma: [T; 2]) -> [T; 2] {
-        sigma.map(|s| s.lift(2.0) * (s - s.lift(1.0)))
+        Components::from_fn(
+            #[inline(always)]
+            |i| sigma[i].lift(2.0) * (sigma[i] - sigma[i].lift(1.0)),
+        )
     }
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, sigma: [L; 2]) -> L {
@@ -32,6 +41,12 @@ impl Energy<Plane> for Arap {
     #[inline(always)]
     fn prox<L: Lane>(&self, p: [L; 2], k: L, _warm: [L; 2]) -> ([L; 2], u32) {
         let two = k.lift(2.0);
-        (Components::from_fn(|i| (two + k * p.at(i)) / (two + k)), 1)
+        (
+            Components::from_fn(
+                #[inline(always)]
+                |i| (two + k * p.at(i)) / (two + k),
+            ),
+            1,
+        )
     }
 }

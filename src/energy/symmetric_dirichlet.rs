@@ -50,6 +50,13 @@ fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
     (z, count)
 }
 
+/// One axis: σ² + σ⁻².
+#[inline(always)]
+fn term<T: Scalar>(s: T) -> T {
+    let squared = s * s;
+    squared + squared.recip()
+}
+
 impl Energy<Plane> for SymmetricDirichlet {
     const BARRIER: bool = true;
     const ISOMETRY: f64 = 4.0;
@@ -59,15 +66,17 @@ impl Energy<Plane> for SymmetricDirichlet {
 
     #[inline(always)]
     fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
-        let term = |s: T| {
-            let squared = s * s;
-            squared + squared.recip()
-        };
         term(sigma[0]) + term(sigma[1])
     }
     #[inline(always)]
     fn gradient<T: Scalar>(&self, sigma: [T; 2]) -> [T; 2] {
-        sigma.map(|s| s.lift(2.0) * (s - (s * s * s).recip()))
+        Components::from_fn(
+            #[inline(always)]
+            |i| {
+                let s = sigma[i];
+                s.lift(2.0) * (s - (s * s * s).recip())
+            },
+        )
     }
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, sigma: [L; 2]) -> L {

@@ -5,27 +5,27 @@ use crate::mesh::SurfaceMesh;
 use crate::optim::BuildError;
 use glam::DVec3;
 
-/// Rest shapes of triangles, each in its own frame (first edge, in-plane normal).
+/// Rest shapes of simplices of dimension k, each in its own frame.
 #[derive(Debug, Clone, Default)]
 pub struct RestShape {
-    /// Vertices of each element.
-    pub simplices: Vec<[u32; 3]>,
-    /// Inverse of the edge matrix [e₁ e₂] in the element's frame, by columns: F = [x₁−x₀ x₂−x₀] Dm⁻¹.
-    pub inverse: Vec<[f64; 4]>,
-    /// Area of each element.
+    /// k: 2 for triangles, 3 for tetrahedra.
+    pub stretches: usize,
+    /// Vertices, k+1 an element.
+    pub vertices: Vec<u32>,
+    /// Inverse of the edge matrix Dm = [e₁ … e_k] in the element's frame, k×k by columns:
+    /// F = [x₁−x₀ … x_k−x₀] Dm⁻¹.
+    pub inverse: Vec<f64>,
+    /// Area or volume of each element.
     pub measure: Vec<f64>,
 }
 
-/// Edge lengths and area of a triangle in space, in its frame: e₁ = (l, 0), e₂ = (x, y).
-///
-/// The area is taken with the shortest edge as one side of the cross product, so that slivers keep
-/// their relative accuracy.
+/// A triangle in space in its own frame (first edge, in-plane normal), e₁ = (l, 0) and e₂ = (x, y):
+/// returns [l, x, y] and the area.
 pub fn triangle_rest(a: DVec3, b: DVec3, c: DVec3) -> ([f64; 3], f64) {
     let (e1, e2) = (b - a, c - a);
     let length = e1.length();
     let normal = e1.cross(e2).length();
-    let y = normal / length;
-    ([length, e1.dot(e2) / length, y], 0.5 * normal)
+    ([length, e1.dot(e2) / length, normal / length], 0.5 * normal)
 }
 
 /// Area of the whole surface, in the square of its units.
@@ -40,15 +40,16 @@ pub fn surface_area(mesh: &SurfaceMesh) -> f64 {
 }
 
 impl RestShape {
-    /// Rest shapes of a surface whose lengths are multiplied by `scale`.
+    /// Rest shapes of the triangles of a surface whose lengths are multiplied by `scale`.
     ///
     /// # Errors
-    /// `DegenerateElement` names the first triangle of area below 1e-14 (paper's code; the surface is
-    /// scaled to unit area) or that is not finite.
+    /// `DegenerateElement` names the first triangle of area below 1e-14 (for a surface scaled to unit
+    /// area that is a relative bound; the paper's code has the same) or not finite.
     pub fn of_surface(mesh: &SurfaceMesh, scale: f64) -> Result<Self, BuildError> {
         let mut rest = RestShape {
-            simplices: mesh.simplices.clone(),
-            inverse: Vec::with_capacity(mesh.simplices.len()),
+            stretches: 2,
+            vertices: mesh.simplices.iter().flatten().copied().collect(),
+            inverse: Vec::with_capacity(4 * mesh.simplices.len()),
             measure: Vec::with_capacity(mesh.simplices.len()),
         };
         for (index, &[a, b, c]) in mesh.simplices.iter().enumerate() {
@@ -57,7 +58,8 @@ impl RestShape {
             if !(measure >= 1e-14 && measure.is_finite()) {
                 return Err(BuildError::DegenerateElement { index, measure });
             }
-            rest.inverse.push([l.recip(), 0.0, -x / (l * y), y.recip()]);
+            rest.inverse
+                .extend([l.recip(), 0.0, -x / (l * y), y.recip()]);
             rest.measure.push(measure);
         }
         Ok(rest)
@@ -65,19 +67,50 @@ impl RestShape {
 
     /// Number of elements.
     pub fn len(&self) -> usize {
-        self.simplices.len()
+        self.measure.len()
     }
 
     /// Are there no elements?
     pub fn is_empty(&self) -> bool {
-        self.simplices.is_empty()
+        self.measure.is_empty()
     }
 
-    /// Gradients of the three hat functions of an element, in its frame: row v of D_i, so that
-    /// F = Σ_v x_v ⊗ g_v.
-    pub fn hat_gradients(&self, element: usize) -> [[f64; 2]; 3] {
-        let [a, b, c, d] = self.inverse[element];
-        // rows of Dm⁻¹: g₁ = (a, c), g₂ = (b, d)
-        [[-(a + b), -(c + d)], [a, c], [b, d]]
+    /// The vertices of an element.
+    pub fn simplex(&self, element: usize) -> &[u32] {
+        let corners = self.stretches + 1;
+        &self.vertices[element * corners..(element + 1) * corners]
+    }
+
+    /// Gradient of the hat function of corner `v` of an element, in its frame (row v of D_i), so that
+    /// F = Σ_v x_v ⊗ g_v. Entries beyond k are 0.
+    pub fn hat_gradient(&self, element: usize, v: usize) -> [f64; 3] {
+        let k = self.stretches;
+        let inverse = &self.inverse[element * k * k..(element + 1) * k * k];
+        let row = |r: usize, column: usize| inverse[column * k + r];
+        core::array::from_fn(|column| match v {
+            _ if column >= k => 0.0,
+            0 => -(0..k).map(|r| row(r, column)).sum::<f64>(),
+            _ => row(v - 1, column),
+        })
+    }
+
+    /// g_a·g_b of two corners of an element: the entry of D_iᵀD_i (5a).
+    pub fn hat_product(&self, element: usize, a: usize, b: usize) -> f64 {
+        let (a, b) = (self.hat_gradient(element, a), self.hat_gradient(element, b));
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    /// Every pair of corners of every element, the diagonal included, as (corner, corner, element)
+    /// with vertex indices.
+    pub fn pairs(&self) -> impl Iterator<Item = (u32, u32, u32)> + Clone + '_ {
+        let corners = self.stretches + 1;
+        (0..self.len()).flat_map(move |e| {
+            (0..corners).flat_map(move |a| {
+                (0..=a).map(move |b| {
+                    let simplex = self.simplex(e);
+                    (simplex[a], simplex[b], e as u32)
+                })
+            })
+        })
     }
 }

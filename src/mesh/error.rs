@@ -41,6 +41,9 @@ pub enum MeshError {
     /// The surface has only one side (a Möbius strip is in it).
     #[error("the surface is one-sided: face {face} cannot be oriented consistently")]
     NotOrientable { face: usize },
+    /// Two neighbours run along their common edge in the same direction.
+    #[error("faces {} and {} are oriented against each other", faces[0], faces[1])]
+    InconsistentOrientation { faces: [usize; 2] },
     /// The surface falls into several pieces.
     #[error("the surface has {components} separate components, one is needed")]
     SeveralComponents { components: usize },
@@ -68,6 +71,7 @@ impl MeshError {
             MeshError::NonManifoldEdge { .. } => "non-manifold-edge",
             MeshError::NonManifoldVertex { .. } => "non-manifold-vertex",
             MeshError::NotOrientable { .. } => "not-orientable",
+            MeshError::InconsistentOrientation { .. } => "inconsistent-orientation",
             MeshError::SeveralComponents { .. } => "several-components",
             MeshError::NotADisk { .. } => "not-a-disk",
         }

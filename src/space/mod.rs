@@ -10,6 +10,8 @@ pub use lane::{Lane, Pack, Scalar};
 pub use plane::Plane;
 
 /// A fixed number of components, one register each.
+///
+/// Closures handed to these inside a kernel are marked `#[inline(always)]`, see `from_fn`.
 pub trait Components<T: Copy>: Copy {
     /// How many.
     const LEN: usize;
@@ -20,15 +22,26 @@ pub trait Components<T: Copy>: Copy {
     /// Component by component.
     #[inline(always)]
     fn zip(self, other: Self, mut f: impl FnMut(T, T) -> T) -> Self {
-        Self::from_fn(|i| f(self.at(i), other.at(i)))
+        Self::from_fn(
+            #[inline(always)]
+            |i| f(self.at(i), other.at(i)),
+        )
     }
 }
 
 impl<T: Copy, const N: usize> Components<T> for [T; N] {
     const LEN: usize = N;
     #[inline(always)]
-    fn from_fn(f: impl FnMut(usize) -> T) -> Self {
-        core::array::from_fn(f)
+    fn from_fn(mut f: impl FnMut(usize) -> T) -> Self {
+        // not core::array::from_fn: it is not always inlined, and code that is not inlined into a
+        // `pulp` dispatch is compiled without its instruction set
+        let mut out = [f(0); N];
+        let mut i = 1;
+        while i < N {
+            out[i] = f(i);
+            i += 1;
+        }
+        out
     }
     #[inline(always)]
     fn at(&self, i: usize) -> T {

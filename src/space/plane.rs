@@ -11,7 +11,7 @@
 //! and reflected F are all exact to rounding. The one singular case is α = 0 (σ₁ = −σ₂), where the
 //! rotation is not defined: it is then taken as the identity.
 
-use super::{Lane, Space};
+use super::{Components, Lane, Space};
 
 /// Triangles (k = 2) in the plane (d = 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -126,7 +126,11 @@ impl Space for Plane {
         let alpha = mul(polar.rotation, [p[0], twist]);
         let beta = mul(polar.rotation, [p[1], p[2]]);
         let target = join(alpha, beta);
-        core::array::from_fn(|i| f[i] - target[i])
+        f.zip(
+            target,
+            #[inline(always)]
+            |f, t| f - t,
+        )
     }
 
     #[inline(always)]

@@ -67,7 +67,10 @@ pub struct BlockSums {
 /// Component-wise load of the elements from `at` on.
 #[inline(always)]
 pub fn load<S: Simd, A: Components<Pack<S>>>(simd: S, rows: &[f64], at: usize) -> A {
-    A::from_fn(|c| Pack::load(simd, &rows[c * BLOCK + at..][..Pack::<S>::WIDTH]))
+    A::from_fn(
+        #[inline(always)]
+        |c| Pack::load(simd, &rows[c * BLOCK + at..][..Pack::<S>::WIDTH]),
+    )
 }
 
 /// Component-wise store.

@@ -22,11 +22,8 @@ pub trait Coupling<S: Space>: Copy + Send + Sync + 'static {
     /// ‖Z‖²_F.
     fn norm_squared<L: Lane>(z: Self::Local<L>) -> L;
     /// The gradient of ½‖local(F) − P‖² with respect to F (16).
-    fn residual<L: Lane>(
-        f: S::Gradient<L>,
-        aux: Self::Aux<L>,
-        p: Self::Local<L>,
-    ) -> S::Gradient<L>;
+    fn residual<L: Lane>(f: S::Gradient<L>, aux: Self::Aux<L>, p: Self::Local<L>)
+    -> S::Gradient<L>;
 }
 
 /// Z = sym(F) (8): rotations are left to the global step.
@@ -56,7 +53,11 @@ impl<S: Space> Coupling<S> for RotationAware {
         S::symmetric_norm_squared(z)
     }
     #[inline(always)]
-    fn residual<L: Lane>(f: S::Gradient<L>, polar: S::Polar<L>, p: S::Symmetric<L>) -> S::Gradient<L> {
+    fn residual<L: Lane>(
+        f: S::Gradient<L>,
+        polar: S::Polar<L>,
+        p: S::Symmetric<L>,
+    ) -> S::Gradient<L> {
         S::stretch_residual(f, polar, p)
     }
 }
@@ -93,6 +94,10 @@ impl<S: Space> Coupling<S> for Linear {
     }
     #[inline(always)]
     fn residual<L: Lane>(f: S::Gradient<L>, _: (), p: S::Gradient<L>) -> S::Gradient<L> {
-        f.zip(p, |f, p| f - p)
+        f.zip(
+            p,
+            #[inline(always)]
+            |f, p| f - p,
+        )
     }
 }

@@ -45,6 +45,23 @@ pub struct Kernel<'a, S, C, E> {
     pub types: PhantomData<(S, C)>,
 }
 
+/// Component i of vertex v of the elements from `at` on.
+#[inline(always)]
+fn corner<S: Space, V: Simd>(
+    simd: V,
+    block: &Block,
+    positions: &[f64],
+    at: usize,
+    [v, i]: [usize; 2],
+) -> Pack<V> {
+    let mut lanes = [0.0; 8];
+    let slots = &block.vertices[v * BLOCK + at..][..Pack::<V>::WIDTH];
+    for (lane, &slot) in lanes.iter_mut().zip(slots) {
+        *lane = positions[slot as usize * S::DIM + i];
+    }
+    Pack::load(simd, &lanes[..Pack::<V>::WIDTH])
+}
+
 /// F of the elements from `at` on: [x₁−x₀ … x_k−x₀] Dm⁻¹.
 #[inline(always)]
 fn deformation_gradient<S: Space, V: Simd>(
@@ -53,36 +70,31 @@ fn deformation_gradient<S: Space, V: Simd>(
     positions: &[f64],
     at: usize,
 ) -> S::Gradient<Pack<V>> {
-    let corner = |v: usize, i: usize| {
-        let mut lanes = [0.0; 8];
-        let slots = &block.vertices[v * BLOCK + at..][..Pack::<V>::WIDTH];
-        for (lane, &slot) in lanes.iter_mut().zip(slots) {
-            *lane = positions[slot as usize * S::DIM + i];
-        }
-        Pack::load(simd, &lanes[..Pack::<V>::WIDTH])
-    };
     let zero = Pack::splat(simd, 0.0);
     // at most 3 edges of dimension 3
     let mut edges = [[zero; 3]; 3];
     for i in 0..S::DIM {
-        let origin = corner(0, i);
+        let origin = corner::<S, V>(simd, block, positions, at, [0, i]);
         for (v, edge) in edges.iter_mut().enumerate().take(S::STRETCHES) {
-            edge[i] = corner(v + 1, i) - origin;
+            edge[i] = corner::<S, V>(simd, block, positions, at, [v + 1, i]) - origin;
         }
     }
-    S::Gradient::from_fn(|c| {
-        let (column, i) = (c / S::DIM, c % S::DIM);
-        let mut sum = zero;
-        for (v, edge) in edges.iter().enumerate().take(S::STRETCHES) {
-            let g = Pack::load(
-                simd,
-                &block.inverse[(column * S::STRETCHES + v) * BLOCK + at..][..Pack::<V>::WIDTH],
-            );
-            let term = edge[i] * g;
-            sum = if v == 0 { term } else { sum + term };
-        }
-        sum
-    })
+    S::Gradient::from_fn(
+        #[inline(always)]
+        |c| {
+            let (column, i) = (c / S::DIM, c % S::DIM);
+            let mut sum = zero;
+            for (v, edge) in edges.iter().enumerate().take(S::STRETCHES) {
+                let g = Pack::load(
+                    simd,
+                    &block.inverse[(column * S::STRETCHES + v) * BLOCK + at..][..Pack::<V>::WIDTH],
+                );
+                let term = edge[i] * g;
+                sum = if v == 0 { term } else { sum + term };
+            }
+            sum
+        },
+    )
 }
 
 /// Spreads scale · M onto the corners: f_v = M g_v, f_0 = −Σ f_v.
@@ -141,7 +153,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         let mut change = [0.0; BLOCK];
         let mut prox_iterations = 0;
         let mut ratio = Pack::splat(simd, 1.0);
-        let [least, most] = clamp.map(|c| Pack::splat(simd, c));
+        let least = Pack::splat(simd, clamp[0]);
+        let most = Pack::splat(simd, clamp[1]);
         for at in (0..block.len).step_by(Pack::<V>::WIDTH) {
             let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
@@ -152,7 +165,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 let (sigma, _) = C::spectrum(s);
                 (
                     s,
-                    C::Local::from_fn(|_| zero),
+                    C::Local::from_fn(
+                        #[inline(always)]
+                        |_| zero,
+                    ),
                     guarded_density::<S, E, _>(energy, sigma),
                 )
             } else {
@@ -164,22 +180,39 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 )
             };
             let half_k = area.lift(0.5) * k;
-            let target = s.zip(u, |s, u| s + u);
+            let target = s.zip(
+                u,
+                #[inline(always)]
+                |s, u| s + u,
+            );
             let l0 = density_old
-                + half_k * C::norm_squared(target.zip(z_old, |t, z| t - z));
+                + half_k
+                    * C::norm_squared(target.zip(
+                        z_old,
+                        #[inline(always)]
+                        |t, z| t - z,
+                    ));
             let (p, frame) = C::spectrum(target);
             let warm: S::Sigma<Pack<V>> = load(simd, &block.sigma, at);
             let (sigma, count) = energy.prox(p, k, warm);
             prox_iterations = prox_iterations.max(count);
             let z: C::Local<Pack<V>> = C::compose(sigma, frame);
             let density = energy.density(sigma);
-            let dual = target.zip(z, |t, z| t - z);
+            let dual = target.zip(
+                z,
+                #[inline(always)]
+                |t, z| t - z,
+            );
             let l1 = density + half_k * C::norm_squared(dual);
             (area * (l1 - l0)).store(&mut change[at..][..Pack::<V>::WIDTH]);
 
             let stiff = energy.effective_stiffness(sigma).max(least).min(most);
             ratio = ratio.max(stiff / k).max(k / stiff);
-            let p = z.zip(dual, |z, u| z - u);
+            let p = z.zip(
+                dual,
+                #[inline(always)]
+                |z, u| z - u,
+            );
             let m = C::residual(f, aux, p);
             spread::<S, V>(simd, block, m, area * k, forces, at);
 
@@ -215,7 +248,15 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             let z: C::Local<Pack<V>> = load(simd, &block.z, at);
             let u: C::Local<Pack<V>> = load(simd, &block.u, at);
             let (_, aux) = C::local(f);
-            let m = C::residual(f, aux, z.zip(u, |z, u| z - u));
+            let m = C::residual(
+                f,
+                aux,
+                z.zip(
+                    u,
+                    #[inline(always)]
+                    |z, u| z - u,
+                ),
+            );
             spread::<S, V>(simd, block, m, area * k, forces, at);
             store(f, &mut block.gradient, at);
             if EVALUATE {

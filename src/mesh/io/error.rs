@@ -1,0 +1,80 @@
+//! Why a file cannot be read, and where.
+
+/// What kind of trouble a [`ParseError`] is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ParseErrorKind {
+    /// Nothing in the file.
+    Empty,
+    /// The file, or a line of it, ends too early.
+    Truncated,
+    /// Something that does not belong where it stands.
+    Syntax,
+    /// Not a number where one is needed.
+    Number,
+    /// NaN, an infinity, or a number too large for double precision.
+    NonFinite,
+    /// An index of something that does not exist.
+    IndexOutOfRange,
+    /// A variant of the format that is not read.
+    Unsupported,
+    /// More elements than the file can hold or the reader takes.
+    TooLarge,
+}
+
+impl ParseErrorKind {
+    /// A short stable name (`"index-out-of-range"`).
+    pub fn name(self) -> &'static str {
+        match self {
+            ParseErrorKind::Empty => "empty",
+            ParseErrorKind::Truncated => "truncated",
+            ParseErrorKind::Syntax => "syntax",
+            ParseErrorKind::Number => "number",
+            ParseErrorKind::NonFinite => "non-finite",
+            ParseErrorKind::IndexOutOfRange => "index-out-of-range",
+            ParseErrorKind::Unsupported => "unsupported",
+            ParseErrorKind::TooLarge => "too-large",
+        }
+    }
+}
+
+/// Why a file cannot be read, and where.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("line {line}, column {column}: {what}")]
+pub struct ParseError {
+    /// 1-based line.
+    pub line: usize,
+    /// 1-based column (bytes).
+    pub column: usize,
+    /// What is wrong, in words.
+    pub what: String,
+    /// What kind of trouble it is.
+    pub kind: ParseErrorKind,
+}
+
+impl ParseError {
+    /// A short stable name of the error's kind.
+    pub fn code(&self) -> &'static str {
+        "parse"
+    }
+
+    /// The error at a byte offset: counts the lines up to it.
+    pub(super) fn at(bytes: &[u8], offset: usize, kind: ParseErrorKind, what: String) -> Self {
+        let before = &bytes[..offset.min(bytes.len())];
+        let mut line = 1;
+        let mut start = 0;
+        for (index, &byte) in before.iter().enumerate() {
+            let lone_return = byte == b'\r' && bytes.get(index + 1) != Some(&b'\n');
+            if byte == b'\n' || lone_return {
+                line += 1;
+                start = index + 1;
+            }
+        }
+        Self {
+            line,
+            column: before.len() - start + 1,
+            what,
+            kind,
+        }
+    }
+}

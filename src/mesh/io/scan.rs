@@ -1,0 +1,228 @@
+//! A cursor over the bytes of a text file: blanks, tokens, numbers, line ends.
+
+use super::{ParseError, ParseErrorKind};
+
+/// The cursor. Positions are byte offsets; lines are only counted when an error needs them.
+pub(super) struct Scanner<'a> {
+    bytes: &'a [u8],
+    position: usize,
+    /// Does a backslash before the line end continue the line?
+    continuations: bool,
+}
+
+/// A token and where it starts.
+#[derive(Clone, Copy)]
+pub(super) struct Token<'a> {
+    pub text: &'a [u8],
+    pub start: usize,
+}
+
+impl<'a> Scanner<'a> {
+    /// A cursor at the start, behind a byte order mark if there is one.
+    pub fn new(bytes: &'a [u8], continuations: bool) -> Self {
+        let position = if bytes.starts_with(b"\xEF\xBB\xBF") {
+            3
+        } else {
+            0
+        };
+        Self {
+            bytes,
+            position,
+            continuations,
+        }
+    }
+
+    /// Bytes left.
+    pub fn remaining(&self) -> usize {
+        self.bytes.len() - self.position
+    }
+
+    /// The line end at the cursor (after a backslash: the one it hides), as a number of bytes.
+    fn line_end(&self, at: usize) -> Option<usize> {
+        match self.bytes.get(at) {
+            Some(b'\n') => Some(1),
+            Some(b'\r') if self.bytes.get(at + 1) == Some(&b'\n') => Some(2),
+            Some(b'\r') => Some(1),
+            _ => None,
+        }
+    }
+
+    /// Skips blanks within the line (and continued line ends).
+    #[inline]
+    fn skip_blanks(&mut self) {
+        while let Some(&byte) = self.bytes.get(self.position) {
+            match byte {
+                b' ' | b'\t' | 0x0b | 0x0c => self.position += 1,
+                b'\\' if self.continuations => match self.line_end(self.position + 1) {
+                    Some(length) => self.position += 1 + length,
+                    None => return,
+                },
+                _ => return,
+            }
+        }
+    }
+
+    /// The next token of this line, if there is one before the line's end or a comment.
+    #[inline]
+    pub fn token(&mut self) -> Option<Token<'a>> {
+        self.skip_blanks();
+        let start = self.position;
+        while let Some(&byte) = self.bytes.get(self.position) {
+            match byte {
+                b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' | b'#' => break,
+                b'\\' if self.continuations && self.line_end(self.position + 1).is_some() => break,
+                _ => self.position += 1,
+            }
+        }
+        (self.position > start).then(|| Token {
+            text: &self.bytes[start..self.position],
+            start,
+        })
+    }
+
+    /// Moves behind the end of this line.
+    #[inline]
+    pub fn skip_line(&mut self) {
+        let mut comment = false;
+        while let Some(&byte) = self.bytes.get(self.position) {
+            match byte {
+                b'\n' | b'\r' => {
+                    self.position += self.line_end(self.position).unwrap_or(1);
+                    return;
+                }
+                b'#' => {
+                    comment = true;
+                    self.position += 1;
+                }
+                // A comment ends with its line, whatever its last character.
+                b'\\' if self.continuations && !comment => {
+                    self.position += 1 + self.line_end(self.position + 1).unwrap_or(0);
+                }
+                _ => self.position += 1,
+            }
+        }
+    }
+
+    /// Skips empty lines and comments; the first token of the next line that has one.
+    #[inline]
+    pub fn first_token(&mut self) -> Option<Token<'a>> {
+        loop {
+            if let Some(token) = self.token() {
+                return Some(token);
+            }
+            if self.remaining() == 0 {
+                return None;
+            }
+            self.skip_line();
+        }
+    }
+
+    /// An error at an offset.
+    #[cold]
+    pub fn error(&self, at: usize, kind: ParseErrorKind, what: impl Into<String>) -> ParseError {
+        ParseError::at(self.bytes, at, kind, what.into())
+    }
+
+    /// The error for a line that ends too early.
+    #[cold]
+    pub fn ends(&self, what: impl Into<String>) -> ParseError {
+        self.error(self.position, ParseErrorKind::Truncated, what)
+    }
+
+    /// The next token as a finite number; `missing` says what it means that there is none.
+    #[inline]
+    pub fn number(&mut self, missing: &str) -> Result<f64, ParseError> {
+        match self.token() {
+            Some(token) => self.parse_number(token),
+            None => Err(self.ends(missing)),
+        }
+    }
+
+    /// A token as a finite number.
+    #[inline]
+    pub fn parse_number(&self, token: Token) -> Result<f64, ParseError> {
+        let parsed = std::str::from_utf8(token.text)
+            .ok()
+            .and_then(|text| text.parse::<f64>().ok());
+        match parsed {
+            Some(value) if value.is_finite() => Ok(value),
+            Some(_) => Err(self.error(
+                token.start,
+                ParseErrorKind::NonFinite,
+                format!("coordinate {} is not finite", quote(token.text)),
+            )),
+            None if is_not_finite_word(token.text) => Err(self.error(
+                token.start,
+                ParseErrorKind::NonFinite,
+                format!("coordinate {} is not finite", quote(token.text)),
+            )),
+            None => Err(self.error(
+                token.start,
+                ParseErrorKind::Number,
+                format!("expected a number, found {}", quote(token.text)),
+            )),
+        }
+    }
+
+    /// A token as a count or 0-based index.
+    pub fn parse_count(&self, token: Token, what: &str) -> Result<u64, ParseError> {
+        match parse_integer(token.text) {
+            Some(value) if value >= 0 => Ok(value as u64),
+            _ => Err(self.error(
+                token.start,
+                ParseErrorKind::Number,
+                format!("expected {what}, found {}", quote(token.text)),
+            )),
+        }
+    }
+}
+
+/// The words other programs write for numbers that are none ("-nan(ind)", "1.#QNAN", "1.#INF").
+fn is_not_finite_word(text: &[u8]) -> bool {
+    let text = text.strip_prefix(b"-").unwrap_or(text);
+    let starts =
+        |word: &[u8]| text.len() >= word.len() && text[..word.len()].eq_ignore_ascii_case(word);
+    // The `#` of Visual C's words starts a comment, so only their head is left.
+    starts(b"nan") || starts(b"inf") || text == b"1."
+}
+
+/// A whole number, saturating; `None` if it is none.
+#[inline]
+pub(super) fn parse_integer(text: &[u8]) -> Option<i64> {
+    let (negative, digits) = match text {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        _ => (false, text),
+    };
+    if digits.is_empty() {
+        return None;
+    }
+    let mut value = 0i64;
+    for &digit in digits {
+        if !digit.is_ascii_digit() {
+            return None;
+        }
+        value = value
+            .saturating_mul(10)
+            .saturating_add(i64::from(digit - b'0'));
+    }
+    Some(if negative { -value } else { value })
+}
+
+/// A token for a message: shortened, unprintable characters escaped.
+pub(super) fn quote(text: &[u8]) -> String {
+    let shown = String::from_utf8_lossy(&text[..text.len().min(40)]);
+    let dots = if text.len() > 40 { "…" } else { "" };
+    format!("\"{}{dots}\"", shown.escape_debug())
+}
+
+/// Appends a number in its shortest form that reads back as the same bits.
+pub(super) fn write_number(out: &mut Vec<u8>, value: f64) {
+    use std::io::Write;
+    let start = out.len();
+    // Writing to a vector cannot fail.
+    let _ = write!(out, "{value:?}");
+    if out[start..].ends_with(b".0") {
+        out.truncate(out.len() - 2);
+    }
+}

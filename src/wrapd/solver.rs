@@ -1,0 +1,565 @@
+//! The iteration of algorithm 1.
+
+use super::block::{BLOCK, Block, BlockSums};
+use super::kernels::{Kernel, Pass};
+use super::{Coupling, WrapdOptions};
+use crate::energy::Energy;
+use crate::geometry::RestShape;
+use crate::linalg::{Cholesky, WeightedSum};
+use crate::optim::lbfgs::{Lbfgs, dot};
+use crate::optim::{
+    BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
+};
+use crate::parallel;
+use crate::space::Space;
+use core::marker::PhantomData;
+use web_time::Instant;
+
+/// What to solve: rest shapes, a start, and vertices held where they start.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    /// Rest shapes; for reported energies their total measure should be 1.
+    pub rest: &'a RestShape,
+    /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
+    pub start: &'a [f64],
+    /// Vertices held at their start; at least one, so that the system is definite.
+    pub pins: &'a [u32],
+}
+
+/// ADMM on a splitting of F: WRAPD and its relatives, by coupling `C` and energy `E`.
+pub struct Wrapd<S: Space, C, E> {
+    options: WrapdOptions,
+    energy: E,
+    /// Slot of each vertex: free ones in elimination order, then the pinned.
+    slot: Vec<u32>,
+    free: usize,
+    blocks: Vec<Block>,
+    sums: Vec<BlockSums>,
+    forces: Vec<f64>,
+    corner_begin: Vec<u32>,
+    corners: Vec<u32>,
+    /// Positions by slot.
+    x: Vec<f64>,
+    /// Positions by vertex.
+    positions: Vec<f64>,
+    gradient: Vec<f64>,
+    next_gradient: Vec<f64>,
+    direction: Vec<f64>,
+    matrix: WeightedSum,
+    factor: Cholesky,
+    history: Lbfgs,
+    report: StepReport,
+    /// No flips at the previous iterate?
+    was_injective: bool,
+    started: Option<Instant>,
+    types: PhantomData<(S, C)>,
+}
+
+fn milliseconds(since: Instant) -> f64 {
+    since.elapsed().as_secs_f64() * 1e3
+}
+
+impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
+    /// Analyses, factors and evaluates the start; all allocation happens here.
+    ///
+    /// # Errors
+    /// Lengths that do not fit, options out of range, a start that is not finite, no pin.
+    pub fn new(problem: Problem, energy: E, options: WrapdOptions) -> Result<Self, BuildError> {
+        options.validate()?;
+        let rest = problem.rest;
+        let n = problem.start.len() / S::DIM;
+        validate::<S>(&problem)?;
+
+        // slots: free vertices in elimination order, then pins
+        let mut pinned = vec![false; n];
+        problem.pins.iter().for_each(|&p| pinned[p as usize] = true);
+        let free_vertices: Vec<u32> = (0..n as u32).filter(|&v| !pinned[v as usize]).collect();
+        let free = free_vertices.len();
+        let mut slot = vec![0u32; n];
+        for (k, &v) in free_vertices.iter().enumerate() {
+            slot[v as usize] = k as u32;
+        }
+        let mut last = free as u32;
+        for v in (0..n).filter(|&v| pinned[v]) {
+            slot[v] = last;
+            last += 1;
+        }
+        let order = {
+            let slot = &slot;
+            Cholesky::order(
+                free,
+                rest.pairs()
+                    .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
+            )
+        };
+        for (k, &first) in order.iter().enumerate() {
+            slot[free_vertices[first as usize] as usize] = k as u32;
+        }
+
+        let contributions: Vec<(u32, u32, u32, f64)> = (0..rest.len())
+            .flat_map(|e| {
+                let slot = &slot;
+                let corners = rest.stretches + 1;
+                (0..corners).flat_map(move |a| {
+                    (0..=a).map(move |b| {
+                        let s = rest.simplex(e);
+                        (
+                            slot[s[a] as usize],
+                            slot[s[b] as usize],
+                            e as u32,
+                            rest.hat_product(e, a, b) * rest.measure[e],
+                        )
+                    })
+                })
+            })
+            .collect();
+        let mut matrix = WeightedSum::new(free, &contributions);
+        drop(contributions);
+        matrix.fill(|_| E::REST_STIFFNESS);
+        let mut factor = Cholesky::analyze(matrix.matrix())?;
+        factor
+            .factorize(matrix.matrix())
+            .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
+
+        let blocks = build_blocks::<S, C, E>(rest, &slot);
+        let corners_per_block = (rest.stretches + 1) * S::DIM * BLOCK;
+        let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
+        let mut x = vec![0.0; problem.start.len()];
+        for v in 0..n {
+            let s = slot[v] as usize * S::DIM;
+            x[s..s + S::DIM].copy_from_slice(&problem.start[v * S::DIM..(v + 1) * S::DIM]);
+        }
+        let unknowns = free * S::DIM;
+        let mut this = Self {
+            options,
+            energy,
+            slot,
+            free,
+            sums: vec![BlockSums::default(); blocks.len()],
+            forces: vec![0.0; corners_per_block * blocks.len()],
+            blocks,
+            corner_begin,
+            corners,
+            x,
+            positions: problem.start.to_vec(),
+            gradient: vec![0.0; unknowns],
+            next_gradient: vec![0.0; unknowns],
+            direction: vec![0.0; unknowns],
+            matrix,
+            factor,
+            history: Lbfgs::new(options.history),
+            report: StepReport {
+                iteration: 0,
+                status: Status::Running,
+                energy: 0.0,
+                inverted: 0,
+                gradient_norm: 0.0,
+                smallest_sigma: 0.0,
+                largest_sigma: 0.0,
+                lbfgs_iterations: 0,
+                reweighted: false,
+                seconds: 0.0,
+                phases: Vec::new(),
+            },
+            was_injective: false,
+            started: None,
+            types: PhantomData,
+        };
+        let sums = this.pass(Pass::Evaluate);
+        this.gather_gradient_norm();
+        this.evaluate(sums);
+        this.was_injective = this.report.inverted == 0;
+        Ok(this)
+    }
+
+    /// Runs one element pass over all blocks and adds up, in the blocks' order.
+    fn pass(&mut self, pass: Pass) -> BlockSums {
+        let chunk = self.forces.len() / self.blocks.len().max(1);
+        let (x, energy) = (&self.x, self.energy);
+        let mut work: Vec<(&mut Block, &mut BlockSums)> =
+            self.blocks.iter_mut().zip(&mut self.sums).collect();
+        parallel::for_each_block(
+            &mut work,
+            &mut self.forces,
+            chunk,
+            |_, (block, sums), forces| {
+                **sums = pulp::Arch::new().dispatch(Kernel::<S, C, E> {
+                    pass,
+                    block,
+                    positions: x,
+                    forces,
+                    energy,
+                    types: PhantomData,
+                });
+            },
+        );
+        let mut total = BlockSums {
+            smallest: f64::INFINITY,
+            ratio: 1.0,
+            ..Default::default()
+        };
+        for s in &self.sums {
+            total.lagrangian_change += s.lagrangian_change;
+            total.z_energy += s.z_energy;
+            total.f_energy += s.f_energy;
+            total.inverted += s.inverted;
+            total.smallest = total.smallest.min(s.smallest);
+            total.largest = total.largest.max(s.largest);
+            total.ratio = total.ratio.max(s.ratio);
+            total.prox_iterations = total.prox_iterations.max(s.prox_iterations);
+        }
+        total
+    }
+
+    /// Adds the corner forces up at the free vertices.
+    fn gather(forces: &[f64], corner_begin: &[u32], corners: &[u32], gradient: &mut [f64]) {
+        const VERTICES: usize = 1024;
+        parallel::for_each_chunk(gradient, VERTICES * S::DIM, |chunk, out| {
+            for (local, g) in out.chunks_exact_mut(S::DIM).enumerate() {
+                let v = chunk * VERTICES + local;
+                let range = corner_begin[v] as usize..corner_begin[v + 1] as usize;
+                let mut sum = [0.0; 3];
+                for &corner in &corners[range] {
+                    for (i, s) in sum.iter_mut().enumerate().take(S::DIM) {
+                        *s += forces[corner as usize + i * BLOCK];
+                    }
+                }
+                g.copy_from_slice(&sum[..S::DIM]);
+            }
+        });
+    }
+
+    /// After an `Evaluate` pass: the norm of the reported energy's gradient.
+    fn gather_gradient_norm(&mut self) {
+        Self::gather(
+            &self.forces,
+            &self.corner_begin,
+            &self.corners,
+            &mut self.next_gradient,
+        );
+        let squared = dot(&self.next_gradient, &self.next_gradient);
+        self.report.gradient_norm = E::SCALE * squared.sqrt();
+    }
+
+    /// Fills the report from the sums of an evaluation.
+    fn evaluate(&mut self, sums: BlockSums) {
+        let measure: f64 = self
+            .blocks
+            .iter()
+            .map(|b| b.measure[..b.len].iter().sum::<f64>())
+            .sum();
+        let reported = |sum: f64| E::SCALE * (sum - E::ISOMETRY * measure) + E::OFFSET;
+        self.report.inverted = sums.inverted;
+        self.report.smallest_sigma = sums.smallest;
+        self.report.largest_sigma = sums.largest;
+        let barrier_broken = E::BARRIER && sums.inverted > 0;
+        self.report.energy = reported(if barrier_broken {
+            sums.z_energy
+        } else {
+            sums.f_energy
+        });
+        if barrier_broken {
+            self.report.gradient_norm = f64::INFINITY;
+        }
+    }
+
+    /// The global step: L-BFGS on (11) until (17). Returns its iterations and the final evaluation.
+    fn global_step(&mut self, lagrangian_change: f64) -> (usize, BlockSums) {
+        let bound = S::KAPPA * lagrangian_change.abs();
+        let gather = |this: &mut Self, into_next: bool| {
+            let target = if into_next {
+                &mut this.next_gradient
+            } else {
+                &mut this.gradient
+            };
+            Self::gather(&this.forces, &this.corner_begin, &this.corners, target);
+        };
+        gather(self, false);
+        let mut count = 0;
+        loop {
+            let mut slope =
+                self.history
+                    .direction(&self.factor, S::DIM, &self.gradient, &mut self.direction);
+            if !(slope < 0.0) {
+                self.history.clear();
+                self.direction
+                    .iter_mut()
+                    .zip(&self.gradient)
+                    .for_each(|(d, g)| *d = -g);
+                slope = -dot(&self.gradient, &self.gradient);
+            }
+            for (x, d) in self.x.iter_mut().zip(&self.direction) {
+                *x += d;
+            }
+            count += 1;
+            let last =
+                C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
+            let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
+            if !C::LINEAR {
+                gather(self, true);
+                self.history
+                    .push(&self.direction, &self.gradient, &self.next_gradient);
+                core::mem::swap(&mut self.gradient, &mut self.next_gradient);
+            }
+            if last {
+                return (count, sums);
+            }
+        }
+    }
+
+    /// Takes over the candidate weights: U is scaled by w²/w_cand², A refactored, the history cleared.
+    fn reweight(&mut self, iteration: usize) -> Result<(), SolveError> {
+        for block in &mut self.blocks {
+            let rows = block.u.len() / BLOCK;
+            for e in 0..block.len {
+                let factor = block.stiffness[e] / block.candidate[e];
+                for c in 0..rows {
+                    block.u[c * BLOCK + e] *= factor;
+                }
+            }
+            block.stiffness.copy_from_slice(&block.candidate);
+        }
+        let blocks = &self.blocks;
+        self.matrix.fill(|e| blocks[e / BLOCK].stiffness[e % BLOCK]);
+        self.history.clear();
+        self.factor
+            .factorize(self.matrix.matrix())
+            .map_err(|e| SolveError::NotPositiveDefinite {
+                iteration,
+                pivot: e.pivot,
+            })
+    }
+
+    fn iterate(&mut self) -> Result<(), SolveError> {
+        let started = *self.started.get_or_insert_with(Instant::now);
+        let k = self.report.iteration;
+        let before = self.report.energy;
+
+        let clock = Instant::now();
+        let clamp = match self.options.reweighting {
+            Some(r) if k >= r.delay => [r.least, r.most_at(k)],
+            _ => [1.0, 1.0],
+        }
+        .map(|beta| beta * E::REST_STIFFNESS);
+        let reset = k == 0 || (k == 1 && self.options.restart_duals);
+        let local = self.pass(Pass::Local { clamp, reset });
+        let local_phase = Phase {
+            kind: PhaseKind::Local,
+            count: local.prox_iterations,
+            milliseconds: milliseconds(clock),
+        };
+
+        let clock = Instant::now();
+        let (count, mut sums) = self.global_step(local.lagrangian_change);
+        let global_phase = Phase {
+            kind: PhaseKind::Global,
+            count: count as u32,
+            milliseconds: milliseconds(clock),
+        };
+
+        let clock = Instant::now();
+        let reweighted = self
+            .options
+            .reweighting
+            .is_some_and(|r| local.ratio >= r.threshold);
+        if reweighted {
+            self.reweight(k + 1)?;
+        }
+        let reweight_phase = Phase {
+            kind: PhaseKind::Reweight,
+            count: u32::from(reweighted),
+            milliseconds: milliseconds(clock),
+        };
+
+        let clock = Instant::now();
+        sums.z_energy = local.z_energy;
+        if let Some(slot) = self.x.iter().position(|x| !x.is_finite()) {
+            let vertex = self
+                .slot
+                .iter()
+                .position(|&s| s as usize == slot / S::DIM)
+                .unwrap_or(0);
+            return Err(SolveError::NonFinite {
+                iteration: k + 1,
+                vertex,
+            });
+        }
+        for (v, &s) in self.slot.iter().enumerate() {
+            let s = s as usize * S::DIM;
+            self.positions[v * S::DIM..(v + 1) * S::DIM].copy_from_slice(&self.x[s..s + S::DIM]);
+        }
+        self.pass(Pass::Evaluate);
+        self.gather_gradient_norm();
+        self.evaluate(sums);
+        let injective = self.report.inverted == 0;
+        let change = (self.report.energy - before).abs();
+        let tolerance = self.options.tolerance;
+        self.report.iteration = k + 1;
+        self.report.lbfgs_iterations = if C::LINEAR { 0 } else { count };
+        self.report.reweighted = reweighted;
+        self.report.status =
+            if injective && self.was_injective && change < tolerance * self.report.energy.abs() {
+                Status::Converged(Criterion::EnergyChange)
+            } else if injective && self.was_injective && self.report.gradient_norm < tolerance {
+                Status::Converged(Criterion::GradientNorm)
+            } else if self.report.iteration >= self.options.max_iterations {
+                Status::MaxIterations
+            } else {
+                Status::Running
+            };
+        self.was_injective = injective;
+        self.report.seconds = started.elapsed().as_secs_f64();
+        let evaluate_phase = Phase {
+            kind: PhaseKind::Evaluate,
+            count: 1,
+            milliseconds: milliseconds(clock),
+        };
+        self.report.phases.clear();
+        self.report
+            .phases
+            .extend([local_phase, global_phase, reweight_phase, evaluate_phase]);
+        Ok(())
+    }
+
+    /// Entries of the Cholesky factor.
+    pub fn factor_entries(&self) -> usize {
+        self.factor.factor_entries()
+    }
+}
+
+fn validate<S: Space>(problem: &Problem) -> Result<(), BuildError> {
+    let (rest, start) = (problem.rest, problem.start);
+    let n = start.len() / S::DIM;
+    let wrong = |argument, expected, found| {
+        Err(BuildError::WrongLength {
+            argument,
+            expected,
+            found,
+        })
+    };
+    if start.len() != n * S::DIM {
+        return wrong("start", n * S::DIM, start.len());
+    }
+    if rest.vertices.len() != rest.len() * (S::STRETCHES + 1) {
+        return wrong(
+            "rest.vertices",
+            rest.len() * (S::STRETCHES + 1),
+            rest.vertices.len(),
+        );
+    }
+    if rest.vertices.iter().any(|&v| v as usize >= n) {
+        return wrong("start", S::DIM, start.len());
+    }
+    if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
+        return Err(BuildError::InvalidOption {
+            option: "start",
+            what: format!("vertex {} is not finite", bad / S::DIM),
+        });
+    }
+    if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {
+        return Err(BuildError::InvalidOption {
+            option: "pins",
+            what: format!("needs at least one vertex, each below {n}"),
+        });
+    }
+    Ok(())
+}
+
+fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
+    rest: &RestShape,
+    slot: &[u32],
+) -> Vec<Block> {
+    use crate::space::Components;
+    let k = rest.stretches;
+    let local = C::Local::<f64>::LEN;
+    (0..rest.len())
+        .step_by(BLOCK)
+        .map(|begin| {
+            let len = (rest.len() - begin).min(BLOCK);
+            let source = |e: usize| begin + e.min(len - 1);
+            let row = |count: usize| vec![0.0; count * BLOCK];
+            Block {
+                len,
+                vertices: (0..(k + 1) * BLOCK)
+                    .map(|i| slot[rest.simplex(source(i % BLOCK))[i / BLOCK] as usize])
+                    .collect(),
+                inverse: (0..k * k * BLOCK)
+                    .map(|i| rest.inverse[source(i % BLOCK) * k * k + i / BLOCK])
+                    .collect(),
+                measure: (0..BLOCK).map(|e| rest.measure[source(e)]).collect(),
+                stiffness: vec![E::REST_STIFFNESS; BLOCK],
+                candidate: vec![E::REST_STIFFNESS; BLOCK],
+                gradient: row(S::Gradient::<f64>::LEN),
+                z: row(local),
+                u: row(local),
+                sigma: vec![1.0; S::STRETCHES * BLOCK],
+                z_density: row(1),
+                f_density: row(1),
+                stretch: row(2),
+            }
+        })
+        .collect()
+}
+
+/// For each free slot, where in the force array its corners are, by ascending element.
+fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u32>, Vec<u32>) {
+    let corners = rest.stretches + 1;
+    let mut begin = vec![0u32; free + 1];
+    let slots = || {
+        rest.vertices
+            .iter()
+            .map(|&v| slot[v as usize] as usize)
+            .enumerate()
+            .filter(|&(_, s)| s < free)
+    };
+    slots().for_each(|(_, s)| begin[s + 1] += 1);
+    for s in 0..free {
+        begin[s + 1] += begin[s];
+    }
+    let mut next = begin.clone();
+    let mut list = vec![0u32; begin[free] as usize];
+    for (i, s) in slots() {
+        let (e, v) = (i / corners, i % corners);
+        let base = (e / BLOCK) * corners * S::DIM * BLOCK + v * S::DIM * BLOCK + e % BLOCK;
+        list[next[s] as usize] = base as u32;
+        next[s] += 1;
+    }
+    (begin, list)
+}
+
+impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
+    fn step(&mut self) -> Result<StepReport, SolveError> {
+        self.iterate()?;
+        Ok(self.report.clone())
+    }
+    fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+    fn dimension(&self) -> usize {
+        S::DIM
+    }
+    fn status(&self) -> Status {
+        self.report.status
+    }
+    fn report(&self) -> &StepReport {
+        &self.report
+    }
+    fn inspect(&self) -> Inspection {
+        let mut inspection = Inspection::default();
+        for block in &self.blocks {
+            for e in 0..block.len {
+                let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
+                let term = |s: f64| s * s + (s * s).recip();
+                inspection.distortion.push(if smallest > 0.0 {
+                    (0.25 * (term(largest) + term(smallest))) as f32
+                } else {
+                    f32::INFINITY
+                });
+                inspection
+                    .weights
+                    .push((block.stiffness[e] / E::REST_STIFFNESS) as f32);
+            }
+        }
+        inspection
+    }
+}
