@@ -74,8 +74,11 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
         ));
         say(&certificate.summary());
     }
+    let reference = reference.map(|r| r.compare(&uv, &certificate, &iterations));
+    if let (Some(comparison), false) = (&reference, arguments.quiet) {
+        say(&comparison.summary());
+    }
     if let Some(path) = &arguments.report {
-        let reference = reference.map(|r| r.compare(&uv, &certificate, &iterations));
         let report = ParameterizeReport {
             program: report::PROGRAM,
             input: arguments.input.display().to_string(),

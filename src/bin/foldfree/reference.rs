@@ -26,6 +26,21 @@ pub struct Comparison {
     pub relative_position_error: f64,
 }
 
+impl Comparison {
+    /// In words.
+    pub fn summary(&self) -> String {
+        let count =
+            |n: Option<usize>| n.map_or("never".to_owned(), |n| format!("after {n} iterations"));
+        format!(
+            "The solution has energy {:.9}, this one {:+.3e} of it more; within 1 % {}, within 1e-6 {}.",
+            self.energy,
+            self.relative_energy_error,
+            count(self.iterations_to_1_percent),
+            count(self.iterations_to_1e_6),
+        )
+    }
+}
+
 /// The solution, brought to the vertices of the mesh that is flattened.
 pub struct Reference {
     file: String,
