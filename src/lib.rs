@@ -15,6 +15,7 @@ pub mod energy;
 mod error;
 pub mod geometry;
 pub mod linalg;
+pub mod local_global;
 pub mod mesh;
 pub mod optim;
 mod parallel;

@@ -2,6 +2,7 @@
 
 mod arap;
 mod symmetric_dirichlet;
+pub mod total;
 
 pub use arap::Arap;
 pub use symmetric_dirichlet::SymmetricDirichlet;

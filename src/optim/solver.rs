@@ -101,6 +101,25 @@ pub struct StepReport {
     pub phases: Vec<Phase>,
 }
 
+impl StepReport {
+    /// The report of a start that has not been evaluated yet.
+    pub fn at_start() -> Self {
+        Self {
+            iteration: 0,
+            status: Status::Running,
+            energy: f64::INFINITY,
+            inverted: 0,
+            gradient_norm: f64::INFINITY,
+            smallest_sigma: 0.0,
+            largest_sigma: 0.0,
+            lbfgs_iterations: 0,
+            reweighted: false,
+            seconds: 0.0,
+            phases: Vec::new(),
+        }
+    }
+}
+
 /// Per-element fields a page draws.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Inspection {

@@ -2,5 +2,8 @@
 //! choice of a solver.
 
 mod options;
+mod problem;
+mod starts;
 
 pub use options::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
+pub use problem::Parameterization;

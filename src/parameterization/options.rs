@@ -1,5 +1,6 @@
 //! The options of a parameterization, as a person names them.
 
+use crate::optim::BuildError;
 use serde::{Deserialize, Serialize};
 
 /// How the map is computed.
@@ -97,5 +98,21 @@ impl Default for ParameterizationOptions {
             max_iterations: 5000,
             seed: 1,
         }
+    }
+}
+
+impl ParameterizationOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// `InvalidOption` names the option.
+    pub fn validate(&self) -> Result<(), BuildError> {
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return Err(BuildError::InvalidOption {
+                option: "tolerance",
+                what: format!("{} is not a finite number of at least 0", self.tolerance),
+            });
+        }
+        Ok(())
     }
 }

@@ -19,6 +19,8 @@ pub trait Components<T: Copy>: Copy {
     fn from_fn(f: impl FnMut(usize) -> T) -> Self;
     /// Component `i`.
     fn at(&self, i: usize) -> T;
+    /// All of them.
+    fn as_slice(&self) -> &[T];
     /// Component by component.
     #[inline(always)]
     fn zip(self, other: Self, mut f: impl FnMut(T, T) -> T) -> Self {
@@ -46,6 +48,10 @@ impl<T: Copy, const N: usize> Components<T> for [T; N] {
     #[inline(always)]
     fn at(&self, i: usize) -> T {
         self[i]
+    }
+    #[inline(always)]
+    fn as_slice(&self) -> &[T] {
+        self
     }
 }
 

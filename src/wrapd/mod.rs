@@ -11,10 +11,14 @@
 
 mod block;
 mod coupling;
+mod elimination;
 mod kernels;
 mod options;
+mod problem;
 mod solver;
 
 pub use coupling::{Coupling, Linear, RotationAware};
+pub use elimination::Elimination;
 pub use options::{Reweighting, WrapdOptions};
-pub use solver::{Problem, Wrapd};
+pub use problem::Problem;
+pub use solver::Wrapd;

@@ -2,8 +2,9 @@
 
 use super::block::{BLOCK, Block, BlockSums};
 use super::kernels::{Kernel, Pass};
-use super::{Coupling, WrapdOptions};
+use super::{Coupling, Elimination, Problem, WrapdOptions};
 use crate::energy::Energy;
+use crate::energy::total::relative_distortion;
 use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::{Lbfgs, dot};
@@ -15,24 +16,12 @@ use crate::space::Space;
 use core::marker::PhantomData;
 use web_time::Instant;
 
-/// What to solve: rest shapes, a start, and vertices held where they start.
-#[derive(Debug, Clone, Copy)]
-pub struct Problem<'a> {
-    /// Rest shapes; for reported energies their total measure should be 1.
-    pub rest: &'a RestShape,
-    /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
-    pub start: &'a [f64],
-    /// Vertices held at their start; at least one, so that the system is definite.
-    pub pins: &'a [u32],
-}
-
 /// ADMM on a splitting of F: WRAPD and its relatives, by coupling `C` and energy `E`.
 pub struct Wrapd<S: Space, C, E> {
     options: WrapdOptions,
     energy: E,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
-    free: usize,
     blocks: Vec<Block>,
     sums: Vec<BlockSums>,
     forces: Vec<f64>,
@@ -68,53 +57,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         options.validate()?;
         let rest = problem.rest;
         let n = problem.start.len() / S::DIM;
-        validate::<S>(&problem)?;
+        problem.validate::<S>()?;
 
-        // slots: free vertices in elimination order, then pins
-        let mut pinned = vec![false; n];
-        problem.pins.iter().for_each(|&p| pinned[p as usize] = true);
-        let free_vertices: Vec<u32> = (0..n as u32).filter(|&v| !pinned[v as usize]).collect();
-        let free = free_vertices.len();
-        let mut slot = vec![0u32; n];
-        for (k, &v) in free_vertices.iter().enumerate() {
-            slot[v as usize] = k as u32;
-        }
-        let mut last = free as u32;
-        for v in (0..n).filter(|&v| pinned[v]) {
-            slot[v] = last;
-            last += 1;
-        }
-        let order = {
-            let slot = &slot;
-            Cholesky::order(
-                free,
-                rest.pairs()
-                    .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
-            )
-        };
-        for (k, &first) in order.iter().enumerate() {
-            slot[free_vertices[first as usize] as usize] = k as u32;
-        }
-
-        let contributions: Vec<(u32, u32, u32, f64)> = (0..rest.len())
-            .flat_map(|e| {
-                let slot = &slot;
-                let corners = rest.stretches + 1;
-                (0..corners).flat_map(move |a| {
-                    (0..=a).map(move |b| {
-                        let s = rest.simplex(e);
-                        (
-                            slot[s[a] as usize],
-                            slot[s[b] as usize],
-                            e as u32,
-                            rest.hat_product(e, a, b) * rest.measure[e],
-                        )
-                    })
-                })
-            })
-            .collect();
-        let mut matrix = WeightedSum::new(free, &contributions);
-        drop(contributions);
+        let elimination = Elimination::new(rest, n, problem.pins);
+        let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
+        let Elimination { slot, free } = elimination;
         matrix.fill(|_| E::REST_STIFFNESS);
         let mut factor = Cholesky::analyze(matrix.matrix())?;
         factor
@@ -134,7 +81,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             options,
             energy,
             slot,
-            free,
             sums: vec![BlockSums::default(); blocks.len()],
             forces: vec![0.0; corners_per_block * blocks.len()],
             blocks,
@@ -148,19 +94,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             matrix,
             factor,
             history: Lbfgs::new(options.history),
-            report: StepReport {
-                iteration: 0,
-                status: Status::Running,
-                energy: 0.0,
-                inverted: 0,
-                gradient_norm: 0.0,
-                smallest_sigma: 0.0,
-                largest_sigma: 0.0,
-                lbfgs_iterations: 0,
-                reweighted: false,
-                seconds: 0.0,
-                phases: Vec::new(),
-            },
+            report: StepReport::at_start(),
             was_injective: false,
             started: None,
             types: PhantomData,
@@ -168,6 +102,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         let sums = this.pass(Pass::Evaluate);
         this.gather_gradient_norm();
         this.evaluate(sums);
+        if E::BARRIER && this.report.inverted > 0 {
+            // there is no Z yet whose energy could stand in
+            this.report.energy = f64::INFINITY;
+        }
         this.was_injective = this.report.inverted == 0;
         Ok(this)
     }
@@ -427,44 +365,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 }
 
-fn validate<S: Space>(problem: &Problem) -> Result<(), BuildError> {
-    let (rest, start) = (problem.rest, problem.start);
-    let n = start.len() / S::DIM;
-    let wrong = |argument, expected, found| {
-        Err(BuildError::WrongLength {
-            argument,
-            expected,
-            found,
-        })
-    };
-    if start.len() != n * S::DIM {
-        return wrong("start", n * S::DIM, start.len());
-    }
-    if rest.vertices.len() != rest.len() * (S::STRETCHES + 1) {
-        return wrong(
-            "rest.vertices",
-            rest.len() * (S::STRETCHES + 1),
-            rest.vertices.len(),
-        );
-    }
-    if rest.vertices.iter().any(|&v| v as usize >= n) {
-        return wrong("start", S::DIM, start.len());
-    }
-    if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
-        return Err(BuildError::InvalidOption {
-            option: "start",
-            what: format!("vertex {} is not finite", bad / S::DIM),
-        });
-    }
-    if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {
-        return Err(BuildError::InvalidOption {
-            option: "pins",
-            what: format!("needs at least one vertex, each below {n}"),
-        });
-    }
-    Ok(())
-}
-
 fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
     rest: &RestShape,
     slot: &[u32],
@@ -549,12 +449,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
         for block in &self.blocks {
             for e in 0..block.len {
                 let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
-                let term = |s: f64| s * s + (s * s).recip();
-                inspection.distortion.push(if smallest > 0.0 {
-                    (0.25 * (term(largest) + term(smallest))) as f32
-                } else {
-                    f32::INFINITY
-                });
+                inspection
+                    .distortion
+                    .push(relative_distortion(&[largest, smallest]));
                 inspection
                     .weights
                     .push((block.stiffness[e] / E::REST_STIFFNESS) as f32);

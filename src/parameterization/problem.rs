@@ -1,0 +1,262 @@
+//! A mesh, made ready, and the solver that flattens it.
+
+use super::starts::start;
+use super::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
+use crate::Error;
+use crate::certificate::Certificate;
+use crate::embedding::{DirectMap, harmonic, lscm, tutte};
+use crate::energy::{Arap, Energy, SymmetricDirichlet};
+use crate::geometry::{RestShape, surface_area};
+use crate::local_global::ArapLocalGlobal;
+use crate::mesh::cut::cut_to_disk;
+use crate::mesh::{MeshError, Prepared, SurfaceMesh, Topology, prepare};
+use crate::optim::{BuildError, Solver, StepReport};
+use crate::space::Plane;
+use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
+use glam::DVec2;
+use web_time::Instant;
+
+/// A flattening in progress.
+pub struct Parameterization {
+    mesh: SurfaceMesh,
+    input_vertices: Vec<u32>,
+    seam_edges: usize,
+    notes: Vec<String>,
+    /// Lengths of the input × `scale` = lengths of the solver, where the surface has unit area.
+    scale: f64,
+    start_kind: Start,
+    setup_seconds: f64,
+    solver: Box<dyn Solver>,
+}
+
+/// A surface cut to a disk, with where its vertices come from.
+struct Disk {
+    mesh: SurfaceMesh,
+    topology: Topology,
+    input_vertices: Vec<u32>,
+    seam_edges: usize,
+    notes: Vec<String>,
+}
+
+fn disk(mesh: &SurfaceMesh, policy: CutPolicy) -> Result<Disk, Error> {
+    let Prepared {
+        mesh,
+        input_vertices,
+        topology,
+        mut notes,
+    } = prepare(mesh)?;
+    if topology.components() != 1 {
+        return Err(MeshError::SeveralComponents {
+            components: topology.components(),
+        }
+        .into());
+    }
+    if topology.is_disk() {
+        return Ok(Disk {
+            mesh,
+            topology,
+            input_vertices,
+            seam_edges: 0,
+            notes,
+        });
+    }
+    if policy == CutPolicy::Refuse {
+        return Err(MeshError::NotADisk {
+            euler_characteristic: topology.euler_characteristic(),
+            boundary_loops: topology.boundary_loops().len(),
+        }
+        .into());
+    }
+    let cut = cut_to_disk(&mesh, &topology)?;
+    notes.push(format!(
+        "cut to a disk along {} edges (Euler characteristic {}, {} boundary loops)",
+        cut.seam_edges.len(),
+        topology.euler_characteristic(),
+        topology.boundary_loops().len(),
+    ));
+    Ok(Disk {
+        topology: Topology::new(&cut.mesh)?,
+        input_vertices: cut
+            .source_vertices
+            .iter()
+            .map(|&v| input_vertices[v as usize])
+            .collect(),
+        seam_edges: cut.seam_edges.len(),
+        mesh: cut.mesh,
+        notes,
+    })
+}
+
+fn interleave(map: &[DVec2]) -> Vec<f64> {
+    map.iter().flat_map(|p| [p.x, p.y]).collect()
+}
+
+/// The vertex nearest to the centre of the bounding box: the one that is pinned.
+fn central_vertex(map: &[DVec2]) -> u32 {
+    let low = map.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
+    let high = map.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
+    let centre = 0.5 * (low + high);
+    let nearest = map
+        .iter()
+        .enumerate()
+        .fold((0, f64::INFINITY), |best, (v, p)| {
+            let d = p.distance_squared(centre);
+            if d < best.1 { (v, d) } else { best }
+        });
+    nearest.0 as u32
+}
+
+impl Parameterization {
+    /// Checks the mesh, cuts it to a disk (or refuses), scales it to unit area, finds the start and
+    /// builds the solver.
+    ///
+    /// # Errors
+    /// [`MeshError`] for a mesh that cannot be flattened, [`BuildError`] for options out of range or a
+    /// problem too large for the memory.
+    pub fn new(mesh: &SurfaceMesh, options: &ParameterizationOptions) -> Result<Self, Error> {
+        let clock = Instant::now();
+        options.validate()?;
+        let Disk {
+            mesh,
+            topology,
+            input_vertices,
+            seam_edges,
+            mut notes,
+        } = disk(mesh, options.cut)?;
+        let area = surface_area(&mesh);
+        let scale = area.sqrt().recip();
+        if !(scale.is_finite() && scale > 0.0) {
+            return Err(MeshError::ZeroArea.into());
+        }
+        let rest = RestShape::of_surface(&mesh, scale)?;
+        let boundary = &topology.boundary_loops()[0];
+        let direct = matches!(
+            options.method,
+            Method::Lscm | Method::Harmonic | Method::Tutte
+        );
+        let wanted = match options.start {
+            Start::Automatic if direct => Start::Collapsed,
+            kind => kind,
+        };
+        let (map, start_kind) = start(wanted, options.seed, &mesh, &rest, boundary)?;
+        if options.start == Start::Automatic && start_kind == Start::Tutte {
+            notes.push("the harmonic start has flips: Tutte's embedding instead".into());
+        }
+        let positions = interleave(&map);
+        let pins = [central_vertex(&map)];
+        let problem = Problem {
+            rest: &rest,
+            start: &positions,
+            pins: &pins,
+        };
+        let solver: Box<dyn Solver> = match options.method {
+            Method::Wrapd | Method::RAdmm | Method::WAdmm | Method::AdmmPd => {
+                match options.energy {
+                    EnergyKind::SymmetricDirichlet => admm(problem, SymmetricDirichlet, options)?,
+                    EnergyKind::Arap => admm(problem, Arap, options)?,
+                }
+            }
+            Method::Arap => Box::new(ArapLocalGlobal::<Plane>::new(
+                problem,
+                options.tolerance,
+                options.max_iterations,
+            )?),
+            Method::Lscm | Method::Harmonic | Method::Tutte => {
+                let clock = Instant::now();
+                let map = match options.method {
+                    Method::Lscm => lscm(&mesh, &rest, boundary)?,
+                    Method::Harmonic => harmonic(&mesh, &rest, boundary)?,
+                    _ => tutte(&mesh, &rest, boundary)?,
+                };
+                let seconds = clock.elapsed().as_secs_f64();
+                Box::new(DirectMap::new(rest, positions, interleave(&map), seconds))
+            }
+        };
+        Ok(Self {
+            mesh,
+            input_vertices,
+            seam_edges,
+            notes,
+            scale,
+            start_kind,
+            setup_seconds: clock.elapsed().as_secs_f64(),
+            solver,
+        })
+    }
+
+    /// The disk that is flattened, in the input's units: the input itself, or cut open. Its triangles
+    /// are the input's, in the input's order.
+    pub fn mesh(&self) -> &SurfaceMesh {
+        &self.mesh
+    }
+    /// For each vertex of [`Self::mesh`], the vertex of the input it comes from.
+    pub fn input_vertices(&self) -> &[u32] {
+        &self.input_vertices
+    }
+    /// Number of edges cut; 0 if the input is a disk.
+    pub fn seam_edges(&self) -> usize {
+        self.seam_edges
+    }
+    /// What was mended or chosen, in words.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+    /// The solver.
+    pub fn solver(&self) -> &dyn Solver {
+        &*self.solver
+    }
+    /// The solver, to be stepped.
+    pub fn solver_mut(&mut self) -> &mut dyn Solver {
+        &mut *self.solver
+    }
+    /// Takes one step.
+    pub fn step(&mut self) -> Result<StepReport, Error> {
+        Ok(self.solver.step()?)
+    }
+    /// The map, a point a vertex of [`Self::mesh`], in the input's units.
+    pub fn uv(&self) -> Vec<DVec2> {
+        let unit = self.scale.recip();
+        self.solver
+            .positions()
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .map(|&[x, y]| unit * DVec2::new(x, y))
+            .collect()
+    }
+    /// The start that was used (what `Automatic` became).
+    pub fn start_kind(&self) -> Start {
+        self.start_kind
+    }
+    /// Seconds that [`Self::new`] took.
+    pub fn setup_seconds(&self) -> f64 {
+        self.setup_seconds
+    }
+    /// What is proven of the present map.
+    pub fn certificate(&self) -> Certificate {
+        Certificate::of_map(&self.mesh, &self.uv())
+    }
+}
+
+/// The ADMM solver the method names: the paper's four curves differ in the coupling and in whether
+/// weights change.
+fn admm<E: Energy<Plane>>(
+    problem: Problem,
+    energy: E,
+    options: &ParameterizationOptions,
+) -> Result<Box<dyn Solver>, BuildError> {
+    let reweighting = matches!(options.method, Method::Wrapd | Method::WAdmm)
+        .then_some(Reweighting::PARAMETERIZATION);
+    let settings = WrapdOptions {
+        reweighting,
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        ..Default::default()
+    };
+    Ok(match options.method {
+        Method::Wrapd | Method::RAdmm => Box::new(Wrapd::<Plane, RotationAware, E>::new(
+            problem, energy, settings,
+        )?),
+        _ => Box::new(Wrapd::<Plane, Linear, E>::new(problem, energy, settings)?),
+    })
+}

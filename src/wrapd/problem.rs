@@ -1,0 +1,58 @@
+//! What an ADMM solver solves.
+
+use crate::geometry::RestShape;
+use crate::optim::BuildError;
+use crate::space::Space;
+
+/// What to solve: rest shapes, a start, and vertices held where they start.
+#[derive(Debug, Clone, Copy)]
+pub struct Problem<'a> {
+    /// Rest shapes; for reported energies their total measure should be 1.
+    pub rest: &'a RestShape,
+    /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
+    pub start: &'a [f64],
+    /// Vertices held at their start; at least one, so that the system is definite.
+    pub pins: &'a [u32],
+}
+
+impl Problem<'_> {
+    /// Checks that the parts fit together.
+    pub fn validate<S: Space>(&self) -> Result<(), BuildError> {
+        let problem = self;
+        let (rest, start) = (problem.rest, problem.start);
+        let n = start.len() / S::DIM;
+        let wrong = |argument, expected, found| {
+            Err(BuildError::WrongLength {
+                argument,
+                expected,
+                found,
+            })
+        };
+        if start.len() != n * S::DIM {
+            return wrong("start", n * S::DIM, start.len());
+        }
+        if rest.vertices.len() != rest.len() * (S::STRETCHES + 1) {
+            return wrong(
+                "rest.vertices",
+                rest.len() * (S::STRETCHES + 1),
+                rest.vertices.len(),
+            );
+        }
+        if rest.vertices.iter().any(|&v| v as usize >= n) {
+            return wrong("start", S::DIM, start.len());
+        }
+        if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
+            return Err(BuildError::InvalidOption {
+                option: "start",
+                what: format!("vertex {} is not finite", bad / S::DIM),
+            });
+        }
+        if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {
+            return Err(BuildError::InvalidOption {
+                option: "pins",
+                what: format!("needs at least one vertex, each below {n}"),
+            });
+        }
+        Ok(())
+    }
+}
