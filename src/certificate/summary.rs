@@ -30,6 +30,26 @@ impl Certificate {
         )
     }
 
+    fn windings(&self) -> String {
+        let inside = self.overwound_inside;
+        let beside = self.overwound.len() - inside;
+        let vertices = |n: usize, place: &str| match n {
+            0 => String::new(),
+            1 => format!("1 {place} vertex"),
+            _ => format!("{n} {place} vertices"),
+        };
+        let both = if inside > 0 && beside > 0 {
+            " and "
+        } else {
+            ""
+        };
+        format!(
+            "Nothing folds, but the triangles around {}{both}{} wind more than once.",
+            vertices(inside, "inner"),
+            vertices(beside, "boundary"),
+        )
+    }
+
     fn injectivity(&self) -> String {
         if self.elements == 0 {
             return "There is nothing to map.".into();
@@ -42,14 +62,14 @@ impl Certificate {
                 count(n, "pair of edges"),
             ),
         };
-        let verdict = if self.globally_injective {
+        let verdict: &str = if self.globally_injective {
             "The map is injective (proven exactly)."
         } else if self.sheets.is_some_and(|s| s > 1) {
             "Parts of the map lie on each other."
         } else if self.locally_injective {
             "The map is injective around every point, but not as a whole."
         } else if !self.overwound.is_empty() {
-            "The map winds around a vertex more than once."
+            return format!("{}{crossings}", self.windings());
         } else if self.irregular_edges > 0 {
             "The triangles do not form an oriented surface."
         } else {

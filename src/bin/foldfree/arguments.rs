@@ -77,7 +77,7 @@ pub struct Parameterize {
     pub quiet: bool,
 }
 
-/// Check a map exactly; exit code 2 when it folds.
+/// Check a map exactly; exit code 2 when it folds (a triangle is inverted or degenerate).
 #[derive(Debug, Args)]
 pub struct Check {
     /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh; also with .gz behind.

@@ -6,6 +6,7 @@ use crate::report::CheckReport;
 use crate::{Outcome, files, say};
 use foldfree::certificate::Certificate;
 use foldfree::mesh::prepare;
+use web_time::Instant;
 
 /// Reads the map, examines it and says what was found.
 pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
@@ -20,8 +21,10 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
         map.mesh = prepared.mesh;
         notes = prepared.notes;
     }
+    let clock = Instant::now();
     let certificate = Certificate::try_of_map(&map.mesh, &map.uv)
         .map_err(|error| Failure::of_file(&arguments.map, error))?;
+    let certificate_seconds = clock.elapsed().as_secs_f64();
     if !arguments.quiet {
         notes.iter().for_each(|note| say(note));
         say(&certificate.summary());
@@ -29,7 +32,7 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
     let fine = if arguments.global {
         certificate.globally_injective
     } else {
-        certificate.locally_injective
+        certificate.is_free_of_folds()
     };
     if let Some(path) = &arguments.report {
         let report = CheckReport {
@@ -37,6 +40,7 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
             map: arguments.map.display().to_string(),
             notes,
             certificate,
+            certificate_seconds,
         };
         files::write(path, &crate::report::to_json(&report)?)?;
     }

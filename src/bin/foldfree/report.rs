@@ -94,6 +94,7 @@ pub struct CheckReport {
     pub notes: Vec<String>,
     #[serde(serialize_with = "snake_keys")]
     pub certificate: Certificate,
+    pub certificate_seconds: f64,
 }
 
 /// The criterion of a converged status.
