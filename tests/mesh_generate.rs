@@ -96,9 +96,9 @@ fn the_hilbert_strip_is_developable() {
             angles[simplex[i] as usize] += (b - a).angle_between(c - a);
         }
     }
-    for vertex in 0..mesh.positions.len() {
+    for (vertex, angle) in angles.iter().enumerate() {
         if !prepared.topology.is_boundary_vertex(vertex as u32) {
-            assert!((angles[vertex] - std::f64::consts::TAU).abs() < 1e-4);
+            assert!((angle - std::f64::consts::TAU).abs() < 1e-4);
         }
     }
     let edges: usize = prepared.topology.boundary_loops()[0].len();

@@ -56,7 +56,7 @@ fn weighted(
                 .map(|(a, b, _)| (unknown[a as usize], unknown[b as usize])),
         )
     };
-    for (k, &first) in order.iter().enumerate() {
+    for (k, &first) in order.unknowns.iter().enumerate() {
         unknown[free[first as usize] as usize] = k as u32;
     }
 
@@ -87,7 +87,7 @@ fn weighted(
     }
     let mut assembly = SymmetricAssembly::new(free.len(), entries.iter().map(|e| (e.0, e.1)));
     assembly.fill(|c| entries[c].2);
-    let mut factor = Cholesky::analyze(assembly.matrix())?;
+    let mut factor = Cholesky::analyze(assembly.matrix(), &order.parts)?;
     factor
         .factorize(assembly.matrix())
         .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

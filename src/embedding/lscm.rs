@@ -29,7 +29,7 @@ pub fn lscm(
     };
     let first = farthest(boundary[0]);
     let second = farthest(first);
-    let Elimination { slot, free } = Elimination::new(rest, n, &[first, second]);
+    let Elimination { slot, free, parts } = Elimination::new(rest, n, &[first, second]);
     let fixed = |v: u32| match v {
         _ if v == first => Some(DVec2::ZERO),
         _ if v == second => Some(DVec2::X),
@@ -73,7 +73,9 @@ pub fn lscm(
     }
     let mut assembly = SymmetricAssembly::new(2 * free, entries.iter().map(|e| (e.0, e.1)));
     assembly.fill(|c| entries[c].2);
-    let mut factor = Cholesky::analyze(assembly.matrix())?;
+    // two unknowns a vertex
+    let parts: Vec<usize> = parts.iter().map(|p| 2 * p).collect();
+    let mut factor = Cholesky::analyze(assembly.matrix(), &parts)?;
     factor
         .factorize(assembly.matrix())
         .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

@@ -15,7 +15,22 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 use nalgebra_sparse::CscMatrix;
 
+use super::EliminationTree;
+use super::triangular::ColumnsOfL;
 use crate::optim::BuildError;
+
+/// An order of elimination.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Order {
+    /// `unknowns[k]` is eliminated k-th.
+    pub unknowns: Vec<u32>,
+    /// Ends of the parts that know nothing of each other; what comes after the last is their common
+    /// top.
+    pub parts: Vec<usize>,
+}
+
+/// Parts the elimination tree is split into: enough for the threads a browser gives.
+const PARTS: usize = 8;
 
 /// A pivot was not positive: the matrix is not positive definite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,6 +51,10 @@ pub struct Cholesky {
     values: Vec<f64>,
     /// Reciprocal diagonal.
     inverse_diagonal: Vec<f64>,
+    /// Ends of the independent parts.
+    parts: Vec<usize>,
+    /// What each part adds to the top in a solve: room for three right-hand sides.
+    to_top: Vec<f64>,
 }
 
 /// The most bytes a factor may take: what a 32-bit address space can give.
@@ -43,9 +62,9 @@ const MEMORY_LIMIT: u64 = 1 << 31;
 
 impl Cholesky {
     /// The fill-reducing elimination order (approximate minimum degree, Amestoy et al. 1996) of a
-    /// symmetric pattern given by its edges: `order[k]` is the unknown eliminated k-th.
-    pub fn order(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Vec<u32> {
-        let assembly = super::SymmetricAssembly::new(n, edges);
+    /// symmetric pattern given by its edges, with independent parts first.
+    pub fn order(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Order {
+        let assembly = super::SymmetricAssembly::new(n, edges.clone());
         let pattern = assembly.matrix().pattern();
         let symbolic = SymbolicSparseColMatRef::new_checked(
             n,
@@ -58,16 +77,28 @@ impl Cholesky {
         let mut inverse = vec![0usize; n];
         let scratch = amd::order_scratch::<usize>(n, pattern.nnz());
         let mut buffer = MemBuffer::new(scratch);
-        match amd::order(
+        let ordered = amd::order(
             &mut forward,
             &mut inverse,
             symbolic,
             amd::Control::default(),
             MemStack::new(&mut buffer),
-        ) {
-            Ok(_) => forward.iter().map(|&k| k as u32).collect(),
-            // only an index overflow can fail here, and 32-bit meshes cannot cause one
-            Err(_) => (0..n as u32).collect(),
+        );
+        // only an index overflow can fail here, and 32-bit meshes cannot cause one
+        if ordered.is_err() {
+            forward = (0..n).collect();
+            inverse = forward.clone();
+        }
+        let relabelled = edges
+            .filter(|&(i, j)| (i as usize) < n && (j as usize) < n)
+            .map(|(i, j)| (inverse[i as usize] as u32, inverse[j as usize] as u32));
+        let upper = super::SymmetricAssembly::new(n, relabelled)
+            .matrix()
+            .transpose();
+        let (order, parts) = EliminationTree::new(&upper).split(&upper, PARTS);
+        Order {
+            unknowns: order.iter().map(|&k| forward[k as usize] as u32).collect(),
+            parts,
         }
     }
 
@@ -75,7 +106,8 @@ impl Cholesky {
     ///
     /// # Errors
     /// `TooLarge` before anything is allocated that a 32-bit memory cannot hold.
-    pub fn analyze(lower: &CscMatrix<f64>) -> Result<Self, BuildError> {
+    /// `parts` are those of the order (or empty).
+    pub fn analyze(lower: &CscMatrix<f64>, parts: &[usize]) -> Result<Self, BuildError> {
         let n = lower.ncols();
         // faer analyses upper triangles: the transpose of ours
         let upper = lower.transpose();
@@ -113,6 +145,8 @@ impl Cholesky {
             rows: Vec::new(),
             values: Vec::new(),
             inverse_diagonal: vec![0.0; n],
+            parts: parts.to_vec(),
+            to_top: vec![0.0; 3 * parts.len() * (n - parts.last().copied().unwrap_or(n))],
         };
         this.build_columns(&upper);
         Ok(this)
@@ -128,44 +162,12 @@ impl Cholesky {
         self.values.len()
     }
 
-    /// The exact pattern of L, column by column, from the elimination tree: row i of L is the union
-    /// of the tree paths from the entries of row i of A up to i (Liu 1990).
+    /// The exact pattern of L, column by column.
     fn build_columns(&mut self, upper: &CscMatrix<f64>) {
         let n = upper.ncols();
-        const NONE: u32 = u32::MAX;
-        let mut parent = vec![NONE; n];
-        let mut ancestor = vec![NONE; n];
-        for i in 0..n {
-            for &start in upper.col(i).row_indices() {
-                let mut j = start as u32;
-                while (j as usize) < i {
-                    let next = ancestor[j as usize];
-                    ancestor[j as usize] = i as u32;
-                    if next == NONE {
-                        parent[j as usize] = i as u32;
-                        break;
-                    }
-                    j = next;
-                }
-            }
-        }
-        let mut mark = vec![NONE; n];
+        let tree = EliminationTree::new(upper);
         let mut count = vec![1u32; n];
-        let mut visit = |each: &mut dyn FnMut(usize, usize)| {
-            mark.iter_mut().for_each(|m| *m = NONE);
-            for i in 0..n {
-                mark[i] = i as u32;
-                for &start in upper.col(i).row_indices() {
-                    let mut j = start;
-                    while j < i && mark[j] != i as u32 {
-                        mark[j] = i as u32;
-                        each(i, j);
-                        j = parent[j] as usize;
-                    }
-                }
-            }
-        };
-        visit(&mut |_, j| count[j] += 1);
+        tree.for_each_entry(upper, |_, j| count[j] += 1);
         let mut begin = Vec::with_capacity(n + 1);
         begin.push(0u32);
         for &c in &count {
@@ -177,7 +179,7 @@ impl Cholesky {
             rows[*slot as usize] = j as u32;
             *slot += 1;
         }
-        visit(&mut |i, j| {
+        tree.for_each_entry(upper, |i, j| {
             rows[next[j] as usize] = i as u32;
             next[j] += 1;
         });
@@ -252,53 +254,18 @@ impl Cholesky {
 
     /// Solves A X = B in place for `columns` right-hand sides (1, 2 or 3), interleaved: n × columns,
     /// row by row.
-    pub fn solve_in_place(&self, x: &mut [f64], columns: usize) {
+    pub fn solve_in_place(&mut self, x: &mut [f64], columns: usize) {
+        let columns_of_l = ColumnsOfL {
+            begin: &self.column_begin,
+            rows: &self.rows,
+            values: &self.values,
+            inverse_diagonal: &self.inverse_diagonal,
+            parts: &self.parts,
+        };
         match columns {
-            1 => self.solve_interleaved::<1>(x.as_chunks_mut().0),
-            2 => self.solve_interleaved::<2>(x.as_chunks_mut().0),
-            _ => self.solve_interleaved::<3>(x.as_chunks_mut().0),
-        }
-    }
-
-    fn solve_interleaved<const D: usize>(&self, x: &mut [[f64; D]]) {
-        debug_assert_eq!(x.len(), self.dimension());
-        let n = self.dimension();
-        for j in 0..n {
-            let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
-            let rows = &self.rows[range.clone()][1..];
-            let values = &self.values[range][1..];
-            let xj = x[j].map(|v| v * self.inverse_diagonal[j]);
-            x[j] = xj;
-            for (&row, &l) in rows.iter().zip(values) {
-                let target = &mut x[row as usize];
-                for d in 0..D {
-                    target[d] -= l * xj[d];
-                }
-            }
-        }
-        for j in (0..n).rev() {
-            let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
-            let rows = &self.rows[range.clone()][1..];
-            let values = &self.values[range][1..];
-            let mut even = x[j];
-            let mut odd = [0.0; D];
-            let mut pairs = rows.chunks_exact(2).zip(values.chunks_exact(2));
-            for (row, l) in &mut pairs {
-                let (a, b) = (&x[row[0] as usize], &x[row[1] as usize]);
-                for d in 0..D {
-                    even[d] -= l[0] * a[d];
-                    odd[d] -= l[1] * b[d];
-                }
-            }
-            if rows.len() % 2 == 1 {
-                let last = &x[rows[rows.len() - 1] as usize];
-                for d in 0..D {
-                    even[d] -= values[values.len() - 1] * last[d];
-                }
-            }
-            for d in 0..D {
-                x[j][d] = (even[d] + odd[d]) * self.inverse_diagonal[j];
-            }
+            1 => columns_of_l.solve::<1>(x.as_chunks_mut().0, &mut self.to_top),
+            2 => columns_of_l.solve::<2>(x.as_chunks_mut().0, &mut self.to_top),
+            _ => columns_of_l.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
         }
     }
 }

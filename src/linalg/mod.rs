@@ -2,6 +2,9 @@
 
 mod assembly;
 mod cholesky;
+mod elimination_tree;
+mod triangular;
 
 pub use assembly::{SymmetricAssembly, WeightedSum};
-pub use cholesky::{Cholesky, NotPositiveDefinite};
+pub use cholesky::{Cholesky, NotPositiveDefinite, Order};
+pub use elimination_tree::EliminationTree;

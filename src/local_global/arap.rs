@@ -50,7 +50,7 @@ where
         let elimination = Elimination::new(rest, problem.start.len() / S::DIM, problem.pins);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
         matrix.fill(|_| 1.0);
-        let mut factor = Cholesky::analyze(matrix.matrix())?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
@@ -117,7 +117,7 @@ where
         let local = clock.elapsed().as_secs_f64() * 1e3;
 
         let clock = Instant::now();
-        let Elimination { slot, free } = &self.elimination;
+        let Elimination { slot, free, .. } = &self.elimination;
         let free_of = |slot: u32| (slot as usize) < *free;
         for (v, &s) in slot.iter().enumerate().filter(|&(_, &s)| free_of(s)) {
             let s = s as usize * S::DIM;

@@ -102,24 +102,19 @@ pub fn prepare(mesh: &SurfaceMesh) -> Result<Prepared, MeshError> {
 /// neither very large nor very small ones overflow or vanish.
 fn check_areas(mesh: &SurfaceMesh) -> Result<(), MeshError> {
     let corners = || mesh.simplices.as_flattened().iter();
-    let largest = corners()
-        .map(|&v| mesh.positions[v as usize].abs().max_element())
-        .fold(0.0, f64::max);
-    if largest == 0.0 {
-        return Err(MeshError::ZeroArea);
-    }
-    let at = |v: u32| mesh.positions[v as usize] / largest;
+    // Halved, so that a difference of two finite numbers is finite; taken from the lowest corner
+    // before anything is rounded, so that a small surface far from the origin keeps its digits.
+    let half = |v: u32| mesh.positions[v as usize] * 0.5;
     let (mut low, mut high) = (DVec3::MAX, DVec3::MIN);
     for &v in corners() {
-        low = low.min(at(v));
-        high = high.max(at(v));
+        low = low.min(half(v));
+        high = high.max(half(v));
     }
-    // A second scaling, for a small surface far from the origin.
     let extent = (high - low).max_element();
     if extent == 0.0 {
         return Err(MeshError::ZeroArea);
     }
-    let at = |v: u32| (at(v) - low) / extent;
+    let at = |v: u32| (half(v) - low) / extent;
     let area = |&[a, b, c]: &[u32; 3]| 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).length();
     let total: f64 = mesh.simplices.iter().map(area).sum();
     if total <= ZERO_AREA {

@@ -125,7 +125,7 @@ impl Lbfgs {
     /// per row. Returns g·direction.
     pub fn direction(
         &mut self,
-        factor: &Cholesky,
+        factor: &mut Cholesky,
         columns: usize,
         gradient: &[f64],
         direction: &mut [f64],

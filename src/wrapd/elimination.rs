@@ -10,6 +10,8 @@ pub struct Elimination {
     pub slot: Vec<u32>,
     /// Number of free vertices.
     pub free: usize,
+    /// Ends of the independent parts of the order.
+    pub parts: Vec<usize>,
 }
 
 impl Elimination {
@@ -33,10 +35,14 @@ impl Elimination {
             rest.pairs()
                 .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
         );
-        for (k, &first) in order.iter().enumerate() {
+        for (k, &first) in order.unknowns.iter().enumerate() {
             slot[free_vertices[first as usize] as usize] = k as u32;
         }
-        Self { slot, free }
+        Self {
+            slot,
+            free,
+            parts: order.parts,
+        }
     }
 
     /// The contributions (row, column, element, A g_a·g_b) of (5a), by slot.

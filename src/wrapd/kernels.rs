@@ -23,10 +23,9 @@ pub enum Pass {
     },
     /// F at new positions and its forces.
     Forces,
-    /// F at new positions, its forces, and the energy's density, flips and stretches there.
+    /// F at new positions, its forces, and the energy's density, flips, stretches and own forces
+    /// there.
     Last,
-    /// F at new positions, and the energy's density, flips, stretches and own forces there.
-    Evaluate,
 }
 
 /// One pass over one block.
@@ -37,7 +36,8 @@ pub struct Kernel<'a, S, C, E> {
     pub block: &'a mut Block,
     /// Positions, interleaved, by vertex slot.
     pub positions: &'a [f64],
-    /// Corner forces out: (v·DIM + i)·BLOCK + e.
+    /// Corner forces out, (v·BLOCK + e)·DIM + i: first those of the coupling, then (pass `Last`) those
+    /// of the energy.
     pub forces: &'a mut [f64],
     /// The energy.
     pub energy: E,
@@ -45,21 +45,29 @@ pub struct Kernel<'a, S, C, E> {
     pub types: PhantomData<(S, C)>,
 }
 
-/// Component i of vertex v of the elements from `at` on.
+/// Positions of vertex v of the elements from `at` on (entries beyond DIM are 0).
 #[inline(always)]
 fn corner<S: Space, V: Simd>(
     simd: V,
     block: &Block,
     positions: &[f64],
     at: usize,
-    [v, i]: [usize; 2],
-) -> Pack<V> {
-    let mut lanes = [0.0; 8];
+    v: usize,
+) -> [Pack<V>; 3] {
+    let mut lanes = [[0.0; 8]; 3];
     let slots = &block.vertices[v * BLOCK + at..][..Pack::<V>::WIDTH];
-    for (lane, &slot) in lanes.iter_mut().zip(slots) {
-        *lane = positions[slot as usize * S::DIM + i];
+    for (lane, &slot) in slots.iter().enumerate() {
+        let position = &positions[slot as usize * S::DIM..][..S::DIM];
+        for i in 0..S::DIM {
+            lanes[i][lane] = position[i];
+        }
     }
-    Pack::load(simd, &lanes[..Pack::<V>::WIDTH])
+    let width = Pack::<V>::WIDTH;
+    [
+        Pack::load(simd, &lanes[0][..width]),
+        Pack::load(simd, &lanes[1][..width]),
+        Pack::load(simd, &lanes[2][..width]),
+    ]
 }
 
 /// F of the elements from `at` on: [x₁−x₀ … x_k−x₀] Dm⁻¹.
@@ -73,10 +81,11 @@ fn deformation_gradient<S: Space, V: Simd>(
     let zero = Pack::splat(simd, 0.0);
     // at most 3 edges of dimension 3
     let mut edges = [[zero; 3]; 3];
-    for i in 0..S::DIM {
-        let origin = corner::<S, V>(simd, block, positions, at, [0, i]);
-        for (v, edge) in edges.iter_mut().enumerate().take(S::STRETCHES) {
-            edge[i] = corner::<S, V>(simd, block, positions, at, [v + 1, i]) - origin;
+    let origin = corner::<S, V>(simd, block, positions, at, 0);
+    for (v, edge) in edges.iter_mut().enumerate().take(S::STRETCHES) {
+        let tip = corner::<S, V>(simd, block, positions, at, v + 1);
+        for i in 0..S::DIM {
+            edge[i] = tip[i] - origin[i];
         }
     }
     S::Gradient::from_fn(
@@ -97,7 +106,8 @@ fn deformation_gradient<S: Space, V: Simd>(
     )
 }
 
-/// Spreads scale · M onto the corners: f_v = M g_v, f_0 = −Σ f_v.
+/// Spreads scale · M onto the corners: f_v = M g_v, f_0 = −Σ f_v. Corner v of element e has its DIM
+/// components side by side at (v·BLOCK + e)·DIM.
 #[inline(always)]
 fn spread<S: Space, V: Simd>(
     simd: V,
@@ -108,22 +118,38 @@ fn spread<S: Space, V: Simd>(
     at: usize,
 ) {
     let zero = Pack::splat(simd, 0.0);
-    for i in 0..S::DIM {
-        let mut rest = zero;
-        for v in 0..S::STRETCHES {
-            let mut force = zero;
+    let mut rest = [zero; 3];
+    for v in 0..S::STRETCHES {
+        let mut force = [zero; 3];
+        for i in 0..S::DIM {
+            let mut sum = zero;
             for column in 0..S::STRETCHES {
                 let g = Pack::load(
                     simd,
                     &block.inverse[(column * S::STRETCHES + v) * BLOCK + at..][..Pack::<V>::WIDTH],
                 );
-                force = force + m.at(column * S::DIM + i) * g;
+                sum = sum + m.at(column * S::DIM + i) * g;
             }
-            let force = scale * force;
-            rest = rest - force;
-            force.store(&mut forces[((v + 1) * S::DIM + i) * BLOCK + at..][..Pack::<V>::WIDTH]);
+            force[i] = scale * sum;
+            rest[i] = rest[i] - force[i];
         }
-        rest.store(&mut forces[i * BLOCK + at..][..Pack::<V>::WIDTH]);
+        store_corner::<S, V>(force, forces, at, v + 1);
+    }
+    store_corner::<S, V>(rest, forces, at, 0);
+}
+
+#[inline(always)]
+fn store_corner<S: Space, V: Simd>(force: [Pack<V>; 3], forces: &mut [f64], at: usize, v: usize) {
+    let width = Pack::<V>::WIDTH;
+    let mut lanes = [[0.0; 8]; 3];
+    for i in 0..S::DIM {
+        force[i].store(&mut lanes[i][..width]);
+    }
+    let target = &mut forces[(v * BLOCK + at) * S::DIM..][..width * S::DIM];
+    for (lane, out) in target.chunks_exact_mut(S::DIM).enumerate() {
+        for i in 0..S::DIM {
+            out[i] = lanes[i][lane];
+        }
     }
 }
 
@@ -136,7 +162,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> WithSimd for Kernel<'_, S, C, E> {
             Pass::Local { clamp, reset } => self.local(simd, clamp, reset),
             Pass::Forces => self.forces::<V, false>(simd),
             Pass::Last => self.forces::<V, true>(simd),
-            Pass::Evaluate => self.evaluate(simd),
         }
     }
 }
@@ -241,6 +266,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             positions,
             ..
         } = self;
+        let (forces, energy_forces) = forces.split_at_mut(forces.len() / 2);
         for at in (0..block.len).step_by(Pack::<V>::WIDTH) {
             let f = deformation_gradient::<S, V>(simd, block, positions, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
@@ -260,7 +286,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             spread::<S, V>(simd, block, m, area * k, forces, at);
             store(f, &mut block.gradient, at);
             if EVALUATE {
-                let (sigma, _) = S::svd(f);
+                let (sigma, frame) = S::svd(f);
+                // ∂ψ/∂F = U ψ'(σ) Vᵀ
+                let stress = S::from_svd(energy.gradient(sigma), frame);
+                spread::<S, V>(simd, block, stress, area, energy_forces, at);
                 evaluate_at::<S, E, V>(block, energy, sigma, at);
             }
         }
@@ -269,28 +298,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         } else {
             BlockSums::default()
         }
-    }
-
-    #[inline(always)]
-    fn evaluate<V: Simd>(self, simd: V) -> BlockSums {
-        let Self {
-            block,
-            forces,
-            energy,
-            positions,
-            ..
-        } = self;
-        for at in (0..block.len).step_by(Pack::<V>::WIDTH) {
-            let f = deformation_gradient::<S, V>(simd, block, positions, at);
-            let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
-            let (sigma, frame) = S::svd(f);
-            // ∂ψ/∂F = U ψ'(σ) Vᵀ
-            let m = S::from_svd(energy.gradient(sigma), frame);
-            spread::<S, V>(simd, block, m, area, forces, at);
-            store(f, &mut block.gradient, at);
-            evaluate_at::<S, E, V>(block, energy, sigma, at);
-        }
-        evaluation_sums(block)
     }
 }
 

@@ -30,7 +30,8 @@ impl Reweighting {
         delay: 1,
     };
 
-    /// β_max(k) of (24b).
+    /// β_max(k) of (24b), k counted so that the first reweighting iteration of a start without delay is
+    /// 1.
     pub fn most_at(&self, iteration: usize) -> f64 {
         // beyond 200 iterations the power has long passed the cap
         (self.most * self.growth.powi(iteration.min(200) as i32)).min(self.cap)

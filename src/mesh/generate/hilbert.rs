@@ -8,22 +8,13 @@ use super::{SurfaceMesh, push_quad, wish};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Strip of `width` quads across, in cells of `width + gap` quads.
+/// Strip of `width` quads across, in cells of `width + gap` quads; both chosen by [`layout`].
 pub(super) fn hilbert_strip(triangles: usize) -> SurfaceMesh {
     let quads = wish(triangles) / 2.0;
-    // Order 4 (256 cells) as the paper's mesh, fewer where there are too few triangles for it.
-    let order = (1..=4u32)
-        .rev()
-        .find(|order| quads >= 0.7 * strip_quads(*order, 2))
-        .unwrap_or(1);
-    let mut width = 2;
-    while (strip_quads(order, width + 1) - quads).abs() < (strip_quads(order, width) - quads).abs()
-    {
-        width += 1;
-    }
-    let period = width + gap(width);
+    let (order, width, gap) = layout(quads);
+    let period = width + gap;
     let cells = curve(order);
-    let side = (1usize << order) * period - gap(width);
+    let side = (1usize << order) * period - gap;
 
     // Which quads of the square belong to the strip: the cells, and the bridges between neighbours.
     let mut inside = vec![false; side * side];
@@ -71,16 +62,33 @@ pub(super) fn hilbert_strip(triangles: usize) -> SurfaceMesh {
     mesh
 }
 
-/// Quads between two neighbouring runs of the strip: about a quarter of its width.
-fn gap(width: usize) -> usize {
-    (width + 2) / 4 + usize::from(width < 2)
+/// The order of the curve, and the quads across the strip and between neighbouring runs of it, that
+/// come closest to a number of quads with a gap of about 2/7 of the width.
+fn layout(quads: f64) -> (u32, usize, usize) {
+    // Order 4 (256 cells) as the paper's mesh, fewer where there are too few triangles for it.
+    let order = (1..=4u32)
+        .rev()
+        .find(|order| quads >= 0.7 * strip_quads(*order, 2, 1))
+        .unwrap_or(1);
+    let cells = 4f64.powi(order as i32);
+    let middle = (quads / cells / 1.28).sqrt() as usize;
+    let mut best = (f64::INFINITY, 2, 1);
+    for width in middle.saturating_sub(1).max(2)..=middle + 2 {
+        for gap in width.div_ceil(6)..=width.div_ceil(2) {
+            let miss = (strip_quads(order, width, gap) / quads.max(1.0)).ln().abs();
+            let cost = miss + 0.3 * (gap as f64 / width as f64 - 2.0 / 7.0).abs();
+            if cost < best.0 {
+                best = (cost, width, gap);
+            }
+        }
+    }
+    (order, best.1, best.2)
 }
 
 /// Number of quads of a strip: 4^order cells and the bridges between them.
-fn strip_quads(order: u32, width: usize) -> f64 {
+fn strip_quads(order: u32, width: usize, gap: usize) -> f64 {
     let cells = 4f64.powi(order as i32);
-    let width_quads = width as f64;
-    cells * width_quads * width_quads + (cells - 1.0) * width_quads * gap(width) as f64
+    (cells * width as f64 + (cells - 1.0) * gap as f64) * width as f64
 }
 
 /// The cells of the Hilbert curve of that order, from start to end.

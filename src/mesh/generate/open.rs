@@ -34,18 +34,18 @@ fn hexagonal_disk(rings: usize, place: impl Fn(f64, f64) -> DVec3) -> SurfaceMes
     mesh
 }
 
-/// A spherical cap that reaches below its equator (100° from the pole), with sixteen bumps and dents
+/// A spherical cap that reaches below its equator (120° from the pole), with twenty-four bumps and dents
 /// pushed along the normal.
 pub(super) fn bumpy_cap(triangles: usize) -> SurfaceMesh {
-    const REACH: f64 = 100.0 / 180.0 * PI;
-    const BUMPS: usize = 16;
+    const REACH: f64 = 120.0 / 180.0 * PI;
+    const BUMPS: usize = 24;
     // Centres on a golden spiral, evenly spread over the cap; heights alternate two up, one down.
     let bumps: Vec<(DVec3, f64)> = (0..BUMPS)
         .map(|i| {
             let t = (i as f64 + 0.5) / BUMPS as f64;
             let polar = (1.0 - t * (1.0 - REACH.cos())).acos();
             let longitude = TAU * 0.618_033_988_749_895 * i as f64;
-            let height = if i % 3 == 2 { -0.14 } else { 0.22 };
+            let height = if i % 3 == 2 { -0.18 } else { 0.36 };
             (spherical(polar, longitude), height)
         })
         .collect();
@@ -53,7 +53,7 @@ pub(super) fn bumpy_cap(triangles: usize) -> SurfaceMesh {
         let direction = spherical(radius * REACH, angle);
         let mut height = 1.0;
         for (centre, bump) in &bumps {
-            height += bump * (-direction.distance_squared(*centre) / (0.26 * 0.26)).exp();
+            height += bump * (-direction.distance_squared(*centre) / (0.24 * 0.24)).exp();
         }
         direction * height
     })

@@ -67,9 +67,13 @@ impl<'a> Scanner<'a> {
     pub fn token(&mut self) -> Option<Token<'a>> {
         self.skip_blanks();
         let start = self.position;
+        // A comment begins where a token could: inside of one, as in 1.#QNAN, a # is part of it.
+        if self.bytes.get(start) == Some(&b'#') {
+            return None;
+        }
         while let Some(&byte) = self.bytes.get(self.position) {
             match byte {
-                b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' | b'#' => break,
+                b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => break,
                 b'\\' if self.continuations && self.line_end(self.position + 1).is_some() => break,
                 _ => self.position += 1,
             }
@@ -182,8 +186,7 @@ fn is_not_finite_word(text: &[u8]) -> bool {
     let text = text.strip_prefix(b"-").unwrap_or(text);
     let starts =
         |word: &[u8]| text.len() >= word.len() && text[..word.len()].eq_ignore_ascii_case(word);
-    // The `#` of Visual C's words starts a comment, so only their head is left.
-    starts(b"nan") || starts(b"inf") || text == b"1."
+    starts(b"nan") || starts(b"inf") || starts(b"1.#")
 }
 
 /// A whole number, saturating; `None` if it is none.

@@ -13,7 +13,7 @@ fn agree(simplices: &[[u32; 3]], corner: u32, across: u32) -> bool {
 pub(super) fn first_clash(simplices: &[[u32; 3]], opposite: &[u32]) -> Option<[usize; 2]> {
     opposite.iter().enumerate().find_map(|(corner, &across)| {
         let clash = across != NONE && !agree(simplices, corner as u32, across);
-        clash.then(|| [corner / 3, across as usize / 3])
+        clash.then_some([corner / 3, across as usize / 3])
     })
 }
 
