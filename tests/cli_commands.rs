@@ -133,6 +133,15 @@ fn running_out_of_iterations_is_exit_code_2_and_still_a_result() {
     let report = json(&folder, "r.json");
     assert_eq!(report["status"], "max-iterations");
     assert_eq!(report["iterations"].as_array().map(Vec::len), Some(3));
+    folder
+        .foldfree("parameterize cap.obj --iterations 0 --start tutte --report r.json")
+        .ends(2);
+    let report = json(&folder, "r.json");
+    assert_eq!(report["iterations"].as_array().map(Vec::len), Some(1));
+    assert_eq!(
+        (&report["status"], &report["start"]),
+        (&"max-iterations".into(), &"tutte".into())
+    );
     assert!(folder.read("map.obj.gz").starts_with(&[0x1f, 0x8b]));
     let checked = folder.foldfree("check map.obj.gz");
     assert!(checked.stdout.contains("triangles: "), "{checked:#?}");

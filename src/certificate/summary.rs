@@ -98,13 +98,13 @@ fn number(x: f64) -> String {
         return if x > 0.0 { "infinite" } else { "−infinite" }.into();
     }
     let size = x.abs();
-    if size != 0.0 && !(1e-4..1e7).contains(&size) {
+    if size != 0.0 && !(1e-2..1e7).contains(&size) {
         return format!("{x:.3e}");
     }
     let digits = if size >= 1.0 {
         6 - (size.log10() as usize).min(6)
     } else {
-        7
+        6
     };
     format!("{x:.digits$}")
 }
@@ -118,10 +118,10 @@ mod tests {
         let shown = [1.0128375275, -0.5, 1234567.0, 3.2e9, 0.0, f64::INFINITY].map(number);
         let expected = [
             "1.012838",
-            "-0.5000000",
+            "-0.500000",
             "1234567",
             "3.200e9",
-            "0.0000000",
+            "0.000000",
             "infinite",
         ];
         assert_eq!(shown, expected);

@@ -45,7 +45,7 @@ pub struct Parameterize {
     /// Refuse a surface that is not a disk instead of cutting it.
     #[arg(long)]
     pub no_cut: bool,
-    /// Stop after this many iterations.
+    /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = ParameterizationOptions::default().max_iterations)]
     pub iterations: usize,
     /// Stop when the relative change of the energy, or its gradient, is below this.

@@ -9,6 +9,7 @@ mod failure;
 mod files;
 mod generate;
 mod parameterize;
+mod progress;
 mod reference;
 mod report;
 

@@ -2,6 +2,7 @@
 
 use crate::arguments::Parameterize;
 use crate::failure::Failure;
+use crate::progress::Progress;
 use crate::reference::Reference;
 use crate::report::{self, Iteration, ParameterizeReport};
 use crate::{Outcome, files, say};
@@ -10,7 +11,6 @@ use foldfree::mesh::io::{CornerTexture, Format, write_obj};
 use foldfree::optim::{CancelToken, Solver, Status};
 use foldfree::parameterization::Parameterization;
 use glam::DVec2;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::Path;
 use web_time::Instant;
 
@@ -37,20 +37,22 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
         notes.iter().for_each(|note| say(note));
     }
 
-    let bar = progress_bar(arguments.quiet, options.max_iterations);
+    let mut progress = Progress::new(arguments.quiet, options.tolerance, options.max_iterations);
     let mut iterations = Vec::new();
     let mut observe = |solver: &dyn Solver| {
         let step = solver.report();
         iterations.push(Iteration::from(step));
-        bar.set_position(step.iteration as u64);
-        bar.set_message(format!(
-            "energy {:.6}, {} inverted",
-            step.energy, step.inverted
-        ));
+        progress.show(step);
     };
-    let ran = foldfree::optim::run(map.solver_mut(), &mut observe, &CancelToken::default());
-    bar.finish_and_clear();
-    let status = ran.map_err(|error| of_input(error.into()))?;
+    let status = if options.max_iterations == 0 {
+        observe(map.solver());
+        Status::MaxIterations
+    } else {
+        let cancel = CancelToken::default();
+        foldfree::optim::run(map.solver_mut(), &mut observe, &cancel)
+            .map_err(|error| of_input(error.into()))?
+    };
+    progress.finish();
 
     let uv = map.uv();
     if let Some(path) = &arguments.out {
@@ -119,16 +121,6 @@ fn check_outputs(arguments: &Parameterize) -> Result<(), Failure> {
     let outputs = [&arguments.out, &arguments.report];
     let mut outputs = outputs.into_iter().flatten();
     outputs.try_for_each(|path: &std::path::PathBuf| files::check_writable(Path::new(path)))
-}
-
-/// On stderr, and only where that is a terminal.
-fn progress_bar(quiet: bool, iterations: usize) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:24} iteration {pos} of at most {len}, {msg}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(iterations as u64).with_style(style)
 }
 
 fn words(status: Status) -> &'static str {

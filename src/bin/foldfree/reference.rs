@@ -31,10 +31,15 @@ impl Comparison {
     pub fn summary(&self) -> String {
         let count =
             |n: Option<usize>| n.map_or("never".to_owned(), |n| format!("after {n} iterations"));
+        let error = self.relative_energy_error;
+        let this = if error.is_finite() {
+            format!("this one {error:+.3e} of it more")
+        } else {
+            "this one folds".to_owned()
+        };
         format!(
-            "The solution has energy {:.9}, this one {:+.3e} of it more; within 1 % {}, within 1e-6 {}.",
+            "The solution has energy {:.9}, {this}; within 1 % {}, within 1e-6 {}.",
             self.energy,
-            self.relative_energy_error,
             count(self.iterations_to_1_percent),
             count(self.iterations_to_1e_6),
         )
