@@ -57,6 +57,7 @@ const COUNTED: usize = 100_000;
 /// Numbers that do not exist (of a map with coordinates that are not finite, or of no triangles) are
 /// NaN; NaN and infinity are `null` in JSON.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct Certificate {
     /// Number of triangles.
