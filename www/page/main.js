@@ -16,7 +16,6 @@ let source = { sample: wanted.sample, triangles: wanted.triangles }; // what is,
 let board; // the canvas
 let session; // the solver
 let playing = false;
-let stepping = false;
 let shown = 0;
 let records = []; // numbers of the iterates the canvas has, prepared start included
 let startsWhenReady; // an act a person asked for before the solver had come
@@ -34,12 +33,13 @@ function setWhere(record) {
     return span;
   };
   const hatch = record.inverted > 0 ? [part('hatch')] : [];
-  $('status').replaceChildren(
+  const parts = [
     part('quiet', `iteration ${record.iteration}${newest > record.iteration ? ` of ${newest}` : ''}`),
     part('', `energy ${number(record.energy)}`),
     part(`inverted ${record.inverted > 0 ? 'bad' : 'good'}`, ...hatch, `${whole(record.inverted)} inverted`),
-    part('quiet time', record.iteration > 0 ? `${number(stepMilliseconds(record), 2)} ms` : ''),
-  );
+    ...(record.iteration > 0 ? [part('quiet time', `${number(stepMilliseconds(record), 2)} ms`)] : []),
+  ];
+  $('status').replaceChildren(...parts.flatMap((element, i) => (i ? [part('dot', ' · '), element] : [element])));
   const handle = $('history');
   handle.max = String(newest);
   handle.value = String(shown);
@@ -180,19 +180,25 @@ function setPlaying(on) {
 }
 
 function pause() {
+  task += 1;
   if (!playing) return;
   setPlaying(false);
   if (records[shown]) speak(spoken(records[shown]), { now: true });
 }
 
-/** Makes one step and shows it; false when there was none to make. */
-async function stepOnce() {
-  if (stepping) return true;
-  stepping = true;
+let task = 0; // what a person asked for last; anything older stops
+let lastStep = Promise.resolve();
+/** Makes one step after those asked for before it and shows it; false when there is none to make. */
+function stepOnce() {
+  lastStep = lastStep.then(makeStep);
+  return lastStep;
+}
+
+async function makeStep() {
   try {
-    const following = shown >= records.length - 1;
     const step = await session.step();
     if (!step) return false;
+    const following = shown >= records.length - 2; // a person may have scrubbed away meanwhile
     board.push(step);
     if (following) show(records.length - 1);
     else setWhere(records[shown]);
@@ -201,8 +207,6 @@ async function stepOnce() {
   } catch (error) {
     notice('The solver stopped', describe(error));
     return false;
-  } finally {
-    stepping = false;
   }
 }
 
@@ -253,7 +257,8 @@ async function steps(count) {
   pause();
   $('invite').hidden = true;
   if (shown < records.length - 1) return show(shown + count);
-  for (let i = 0; i < count; i += 1) {
+  const mine = task;
+  for (let i = 0; i < count && mine === task; i += 1) {
     if (!(await stepOnce())) break;
     if (count > 1) await nextFrame();
   }
@@ -473,6 +478,12 @@ function help() {
 
 // ——— the beginning ———
 
+/** The canvas wants neither the focus nor the keyboard: the page has its keys. */
+function quietCanvas() {
+  for (const agent of document.querySelectorAll('body > input, #stage > input')) agent.inert = true;
+  $('canvas').blur();
+}
+
 async function begin() {
   connect();
   reflectControls();
@@ -486,8 +497,7 @@ async function begin() {
     setBusy('');
     return notice('The drawing board did not start', `${describe(error)} The page needs WebGL 2 and WebAssembly.`);
   }
-  if ([$('canvas'), document.body].every((e) => e !== document.activeElement)) document.activeElement.blur();
-  $('canvas').blur();
+  quietCanvas();
   board.theme(isDark());
   const still = matchMedia('(prefers-reduced-motion: reduce)');
   board.reducedMotion(still.matches);

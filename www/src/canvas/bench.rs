@@ -15,7 +15,7 @@ const FRAME_BUDGET: usize = 192 << 20;
 
 /// How many times a map may cover itself before its triangles are drawn one for many: what lies
 /// deeper cannot be seen, and painting it would stop a graphics card.
-pub const MOST_LAYERS: usize = 24;
+const MOST_LAYERS: usize = 24;
 
 /// Earlier runs kept as curves.
 const MOST_EARLIER_RUNS: usize = 6;
@@ -94,6 +94,8 @@ pub struct Bench {
     pub inverted: Vec<u32>,
     /// Every how many triangles one is drawn in the map: 1 unless it covers itself many times.
     pub thinning: usize,
+    /// How many times the map on show covers its bounding box.
+    pub layers: usize,
     /// Events for the page.
     pub events: Vec<Event>,
     stale: bool,
@@ -135,6 +137,7 @@ impl Bench {
             hover: None,
             inverted: Vec::new(),
             thinning: 1,
+            layers: 1,
             events: Vec::new(),
             stale: false,
             scratch: Scratch::default(),
@@ -245,7 +248,8 @@ impl Bench {
             .corner_distortions
             .extend(scratch.distortions.iter().flat_map(|d| [*d; 3]));
         outline::per_corner(indices, map, 2, &mut scratch.corners);
-        self.thinning = outline::layers(indices, map).div_ceil(MOST_LAYERS).max(1);
+        self.layers = outline::layers(indices, map);
+        self.thinning = self.layers.div_ceil(MOST_LAYERS).max(1);
         outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
         scratch.boundary.clear();
         outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.boundary);

@@ -125,7 +125,7 @@ impl Column<'_> {
         if record.iteration == 0 {
             self.section(
                 "The start",
-                &format!("{} {}", method_name(method), citation(method)),
+                &format!("{}, {}", method_name(method), citation(method)),
             );
             let words = "No step has been made. Play or step to see what an iteration does.";
             let font = style::regular(style::SMALL * self.bench.text);
@@ -315,7 +315,11 @@ impl Column<'_> {
                         &ends, stroke, &dashes, &gaps, 0.0,
                     ));
             }
-            let name = format!("{} from {}", method_name(&run.method), run.start);
+            let name = if run.start == self.bench.run.start {
+                method_name(&run.method).to_owned()
+            } else {
+                format!("{}, {}", method_name(&run.method), run.start)
+            };
             self.text(
                 self.left + 34.0,
                 middle,

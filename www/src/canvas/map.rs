@@ -3,7 +3,7 @@
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 use glam::{Mat4, Vec2, Vec3};
 
-use super::bench::{Bench, MOST_LAYERS};
+use super::bench::Bench;
 use super::{gpu, style};
 use crate::colour::{self, DISTORTION_END, VERMILION};
 use crate::distortion::{corners_of, triangle_at};
@@ -14,9 +14,15 @@ const MOST_RINGS: usize = 80;
 
 /// Draws the view and answers the pointer; returns the triangle under it.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
-    let size = Vec2::new(rect.width(), rect.height());
+    // The map keeps clear of the heading and the legend.
+    let text = bench.text;
+    let inner = Rect::from_min_max(
+        rect.min + vec2(0.0, 30.0 * text),
+        rect.max - vec2(0.0, 52.0 * text),
+    );
+    let size = Vec2::new(inner.width(), inner.height()).max(Vec2::ONE);
     let response = ui.interact(rect, ui.scope_id().with("map"), Sense::click_and_drag());
-    let from_screen = |p: Pos2| Vec2::new(p.x - rect.center().x, rect.center().y - p.y);
+    let from_screen = |p: Pos2| Vec2::new(p.x - inner.center().x, inner.center().y - p.y);
     if response.dragged() {
         let d = response.drag_delta();
         bench.pan.drag(Vec2::new(d.x, -d.y), size);
@@ -41,8 +47,10 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     }
 
     let scale = bench.pan.scale(size);
-    let half = 0.5 * size;
-    let matrix = Mat4::from_scale(Vec3::new(scale / half.x, scale / half.y, 1.0))
+    let half = Vec2::new(0.5 * rect.width(), 0.5 * rect.height());
+    let rise = (rect.center().y - inner.center().y) / half.y;
+    let matrix = Mat4::from_translation(Vec3::new(0.0, rise, 0.0))
+        * Mat4::from_scale(Vec3::new(scale / half.x, scale / half.y, 1.0))
         * Mat4::from_translation(-bench.pan.centre.extend(0.0));
     let look = bench.look(ui.pixels_per_point());
     ui.painter().add(egui::PaintCallback {
@@ -52,7 +60,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
         })),
     });
 
-    rings(ui.painter(), rect, bench, size);
+    rings(ui.painter(), inner, bench, size);
     let found = response
         .hover_pos()
         .filter(|_| !response.dragged())
@@ -61,6 +69,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
         response.on_hover_text_at_pointer(text);
     }
     legend(ui.painter(), rect, bench);
+    let right = inverted_key(ui.painter(), rect, bench);
     let away = if bench.pan.follows {
         String::new()
     } else {
@@ -68,9 +77,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     };
     let dropped = if bench.thinning > 1 && bench.pan.follows {
         format!(
-            "1 in {} triangles drawn: it covers itself {}-fold",
-            bench.thinning,
-            MOST_LAYERS * bench.thinning
+            "1 in {} triangles drawn: it covers itself {} times",
+            bench.thinning, bench.layers
         )
     } else if bench.shown_map == bench.shown {
         away
@@ -80,7 +88,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
             bench.shown_map
         )
     };
-    style::heading(ui.painter(), bench, rect, "Map", &dropped);
+    style::heading(ui.painter(), bench, rect, right, "Map", &dropped);
     found
 }
 
@@ -143,7 +151,11 @@ fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     let bottom = rect.bottom() - 14.0 - 16.0 * text;
     let bar = Rect::from_min_max(pos2(left, bottom - bar_height), pos2(left + width, bottom));
     let swatch = Rect::from_min_size(pos2(bar.right(), bar.top()), vec2(16.0 * text, bar_height));
-    let caption = "stretch or squeeze, max(σ₁, 1/σ₂)";
+    let caption = if rect.width() > 260.0 * text {
+        "stretch or squeeze, max(σ₁, 1/σ₂)"
+    } else {
+        "stretch or squeeze"
+    };
     let ground = Rect::from_min_max(
         pos2(rect.left() + 8.0, bar.top() - 22.0 * text),
         pos2(
@@ -198,10 +210,10 @@ fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
             style::colour(theme.quiet),
         );
     }
-    inverted_key(painter, rect, bench);
 }
 
-fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+/// How many are inverted, with their hatch; returns its left edge.
+fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) -> f32 {
     let (theme, text) = (bench.theme, bench.text);
     let reported = bench
         .record()
@@ -233,7 +245,7 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
         vec2(side, side),
     );
     if reported == 0 {
-        return;
+        return place.left() - 12.0;
     }
     painter.rect_filled(key, 0.0, Color32::from_rgb(255, 230, 209));
     let clip = painter.with_clip_rect(key);
@@ -254,4 +266,5 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
         Stroke::new(1.0, style::colour(outline)),
         egui::StrokeKind::Inside,
     );
+    key.left() - 12.0
 }

@@ -143,9 +143,11 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 }
 
 fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
-    let end = style::heading(ui.painter(), bench, rect, "Convergence", "");
+    let end = style::heading(ui.painter(), bench, rect, rect.right(), "Convergence", "");
     let gap = bench.plot_height == PlotHeight::Gap;
-    let vertical = if gap {
+    let vertical = if gap && bench.lowest_energy().is_none() {
+        "(E − lowest) / lowest, once nothing is inverted"
+    } else if gap {
         "(E − lowest) / lowest"
     } else {
         energy_caption(&bench.energy)

@@ -22,9 +22,7 @@ void main() {
     if (v_distortion < 0.0) {
         c = inverted(v_edge);
     } else {
-        vec3 tint = ramp(v_distortion);
-        if (v_distortion > exp(u_end)) tint = clamped(tint);
-        c = mix(grey, tint * mix(0.80, 1.12, check), u_tint);
+        c = mix(grey, ramp(v_distortion) * mix(0.80, 1.12, check), u_tint);
     }
     vec3 n = normalize(v_normal);
     if (!gl_FrontFacing) n = -n;
