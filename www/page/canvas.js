@@ -61,6 +61,11 @@ class Board {
     this.canvas.pushFrame(numbers, phases, map);
   }
 
+  /** Pairs of boundary edges that meet in the newest map. */
+  crossings(list) {
+    this.canvas.setCrossings(Uint32Array.from(list.flatMap(({ edges }) => edges.flat())));
+  }
+
   show(index) { this.canvas.showFrame(index); }
   facts(pairs) { this.canvas.setFacts(pairs.flat()); }
   theme(dark) { this.canvas.setTheme(dark); }

@@ -70,6 +70,17 @@ function show(index, { quietly = false } = {}) {
   if (!quietly) speak(spoken(records[shown]));
 }
 
+let soon;
+/** Shows the newest iterate with the next frame, however many come until then. */
+function showSoon() {
+  shown = records.length - 1;
+  if (document.hidden || session.finished) {
+    cancelAnimationFrame(soon);
+    soon = undefined;
+    show(shown);
+  } else soon ??= requestAnimationFrame(() => { soon = undefined; show(shown); });
+}
+
 function setFacts() {
   if (!session?.problem) return;
   const { startKind, setupSeconds, notes } = session.problem;
@@ -85,7 +96,7 @@ function setFacts() {
   const proof = session.certificate;
   if (proof) {
     pairs.push(['certificate', proof.locallyInjective ? 'no triangle inverted (exact)' : `${proof.inverted.length} inverted (exact)`]);
-    if (proof.locallyInjective) pairs.push(['', proof.globallyInjective ? 'nothing overlaps (exact)' : 'the boundary crosses itself']);
+    if (proof.locallyInjective) pairs.push(['', proof.globallyInjective ? 'nothing overlaps (exact)' : `${proof.boundaryCrossingCount || ''} boundary crossings (exact)`]);
   }
   board.facts(pairs);
 }
@@ -200,9 +211,9 @@ async function makeStep() {
     if (!step) return false;
     const following = shown >= records.length - 2; // a person may have scrubbed away meanwhile
     board.push(step);
-    if (following) show(records.length - 1);
-    else setWhere(records[shown]);
     if (session.finished) finish(step);
+    if (following) showSoon();
+    else setWhere(records[shown]);
     return !session.finished;
   } catch (error) {
     notice('The solver stopped', describe(error));
@@ -212,6 +223,7 @@ async function makeStep() {
 
 function finish(step) {
   setFacts();
+  board.crossings(session.certificate?.boundaryCrossings ?? []);
   if (step.status !== 'converged') notice('The solver ended', `${ending(step)} after ${step.iteration} iterations.`, { plain: true });
 }
 
@@ -227,14 +239,10 @@ async function play() {
   show(records.length - 1, { quietly: true });
   let due = performance.now();
   while (playing) {
+    if (!(await stepOnce())) pause();
     const pace = Number($('pace').value);
-    const drawn = performance.now();
-    // As fast as it can: several steps a frame, the page still at its frame rate.
-    do {
-      if (!(await stepOnce())) { pause(); break; }
-    } while (playing && pace === 0 && performance.now() - drawn < 10);
-    await nextFrame();
-    if (pace > 0) {
+    if (pace > 0) { // else as fast as it can: the worker steps, the page draws the newest every frame
+      await nextFrame();
       due = Math.max(due + 1000 / pace, performance.now() - 100);
       while (playing && performance.now() < due) await nextFrame();
     }
@@ -260,7 +268,6 @@ async function steps(count) {
   const mine = task;
   for (let i = 0; i < count && mine === task; i += 1) {
     if (!(await stepOnce())) break;
-    if (count > 1) await nextFrame();
   }
 }
 
@@ -481,6 +488,7 @@ function help() {
 /** The canvas wants neither the focus nor the keyboard: the page has its keys. */
 function quietCanvas() {
   for (const agent of document.querySelectorAll('body > input, #stage > input')) agent.inert = true;
+  $('canvas').tabIndex = -1;
   $('canvas').blur();
 }
 

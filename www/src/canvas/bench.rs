@@ -96,6 +96,8 @@ pub struct Bench {
     pub thinning: usize,
     /// How many times the map on show covers its bounding box.
     pub layers: usize,
+    /// Pairs of boundary edges that meet in the newest map, by its certificate.
+    pub crossings: Vec<[[u32; 2]; 2]>,
     /// Events for the page.
     pub events: Vec<Event>,
     stale: bool,
@@ -138,6 +140,7 @@ impl Bench {
             inverted: Vec::new(),
             thinning: 1,
             layers: 1,
+            crossings: Vec::new(),
             events: Vec::new(),
             stale: false,
             scratch: Scratch::default(),
@@ -168,6 +171,7 @@ impl Bench {
         }
         gpu::with(|gpu| gpu.set_surface(&corners, &corner_normals, &seam));
         self.earlier.clear();
+        self.crossings.clear();
         self.run = Run::default();
         self.frames.clear();
         self.hover = None;
@@ -194,7 +198,7 @@ impl Bench {
             let excess = self.earlier.len().saturating_sub(MOST_EARLIER_RUNS);
             self.earlier.drain(..excess);
         }
-        // The same solver again replaces its own curve when it ends, not before.
+        self.crossings.clear();
         self.frames.clear();
         self.pan.follows = true;
         (self.shown, self.shown_map) = (0, 0);

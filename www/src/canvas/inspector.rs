@@ -96,15 +96,12 @@ impl Column<'_> {
         let first = self.text(self.left, middle, Align2::LEFT_CENTER, name, false, true);
         let font = style::regular(style::BODY * self.bench.text);
         let ink = style::colour(self.bench.theme.ink);
-        let galley =
-            self.ui
-                .painter()
-                .layout(value.to_owned(), font, ink, room - first.width() - 14.0);
+        let width = room - first.width() - 14.0;
+        let mut job = egui::text::LayoutJob::simple(value.to_owned(), font, ink, width);
+        job.halign = egui::Align::RIGHT;
+        let galley = self.ui.painter().layout_job(job);
         let tall = galley.size().y.max(self.line() - 2.0);
-        let at = pos2(
-            self.right - galley.size().x,
-            middle - 0.5 * galley.size().y.min(self.line()),
-        );
+        let at = pos2(self.right, middle - 0.5 * galley.size().y.min(self.line()));
         self.ui.painter().galley(at, galley, ink);
         if !hint.is_empty() {
             let row = Rect::from_min_max(pos2(self.left, self.y), pos2(self.right, self.y + tall));

@@ -7,10 +7,14 @@ use super::bench::Bench;
 use super::{gpu, style};
 use crate::colour::{self, DISTORTION_END, VERMILION};
 use crate::distortion::{corners_of, triangle_at};
+use crate::outline::meeting;
 use crate::scale::{number, whole};
 
 /// Inverted triangles that get a ring when too small to see, at most.
 const MOST_RINGS: usize = 80;
+
+/// Crosses drawn where the boundary meets itself, at most.
+const MOST_CROSSES: usize = 200;
 
 /// Draws the view and answers the pointer; returns the triangle under it.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
@@ -61,6 +65,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     });
 
     rings(ui.painter(), inner, bench, size);
+    crossings(ui.painter(), inner, bench, size);
     let found = response
         .hover_pos()
         .filter(|_| !response.dragged())
@@ -138,6 +143,28 @@ fn rings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
                 Stroke::new(3.5, style::colour(bench.theme.ground).gamma_multiply(0.8)),
             );
             painter.circle_stroke(at, 8.0, Stroke::new(1.6, style::colour(VERMILION)));
+        }
+    }
+}
+
+/// A cross wherever the boundary of the newest map meets itself.
+fn crossings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
+    let newest = bench.shown + 1 == bench.run.records.len();
+    let Some(map) = bench
+        .map()
+        .filter(|_| newest && !bench.crossings.is_empty())
+    else {
+        return;
+    };
+    for edges in bench.crossings.iter().take(MOST_CROSSES) {
+        let at = bench
+            .pan
+            .to_view(Vec2::from_array(meeting(edges, map)), size);
+        let at = rect.center() + vec2(at.x, -at.y);
+        for (width, ink) in [(4.5, bench.theme.ground), (1.8, VERMILION)] {
+            for arm in [vec2(4.5, 4.5), vec2(4.5, -4.5)] {
+                painter.line_segment([at - arm, at + arm], Stroke::new(width, style::colour(ink)));
+            }
         }
     }
 }

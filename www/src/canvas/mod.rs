@@ -116,6 +116,19 @@ impl Canvas {
         self.change(|bench| bench.facts = facts);
     }
 
+    /// Pairs of boundary edges that meet where they should not in the newest map: four vertices each.
+    #[wasm_bindgen(js_name = setCrossings)]
+    pub fn set_crossings(&self, vertices: &[u32]) {
+        self.change(|bench| {
+            let n = bench.problem.vertices;
+            let pairs = vertices.as_chunks::<4>().0.iter();
+            bench.crossings = pairs
+                .filter(|pair| pair.iter().all(|v| (*v as usize) < n))
+                .map(|&[a, b, c, d]| [[a, b], [c, d]])
+                .collect();
+        });
+    }
+
     /// Forgets the curves of earlier runs.
     #[wasm_bindgen(js_name = clearCurves)]
     pub fn clear_curves(&self) {
