@@ -4,7 +4,8 @@ use crate::mesh::{MeshError, io::ParseError};
 use crate::optim::{BuildError, SolveError};
 
 /// Any error of this crate. Each variant wraps the typed error of the room that raised it.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
+#[serde(untagged)]
 #[non_exhaustive]
 pub enum Error {
     /// A file could not be read.

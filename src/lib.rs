@@ -21,6 +21,8 @@ pub mod optim;
 mod parallel;
 pub mod parameterization;
 pub mod space;
+#[cfg(target_arch = "wasm32")]
+pub mod wasm;
 pub mod wrapd;
 
 pub use error::Error;

@@ -9,6 +9,7 @@ use glam::DVec2;
 
 /// Two boundary edges whose images meet where they should not.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct BoundaryCrossing {
     /// The two edges, each by its vertices in the direction of its triangle.

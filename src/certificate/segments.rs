@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 
 /// How two edges meet that should not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum CrossingKind {
     /// The interiors cross in one point.

@@ -4,7 +4,8 @@
 #![allow(missing_docs)]
 
 /// Why a mesh cannot be used, naming the element. Indices are 0-based.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
+#[serde(untagged)]
 #[non_exhaustive]
 pub enum MeshError {
     /// No elements at all.

@@ -4,7 +4,8 @@
 #![allow(missing_docs)]
 
 /// Why a solver could not be built.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
+#[serde(untagged)]
 #[non_exhaustive]
 pub enum BuildError {
     /// A rest element has no measure.
@@ -46,7 +47,8 @@ impl BuildError {
 }
 
 /// Why a step failed. The solver keeps its last good iterate.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
+#[serde(untagged)]
 #[non_exhaustive]
 pub enum SolveError {
     /// A refactorisation met a non-positive pivot.

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What stopped a converged solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Criterion {
     /// The relative change of the energy fell below the tolerance.
@@ -47,6 +48,7 @@ impl Status {
 
 /// The phases an iteration can consist of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum PhaseKind {
     /// The per-element proximal step.
@@ -61,6 +63,7 @@ pub enum PhaseKind {
 
 /// One phase of one iteration: what it did and how long it took.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct Phase {
     /// Which phase.

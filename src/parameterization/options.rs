@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the map is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// Rotation-aware ADMM with dynamic reweighting (Brown & Narain 2021).
@@ -28,6 +29,7 @@ pub enum Method {
 
 /// The energy an ADMM method minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum EnergyKind {
     /// ψ = σ₁² + σ₁⁻² + σ₂² + σ₂⁻²; reported as ¼ Σ A (ψ − 4) + 1, so an isometry has 1.
@@ -39,6 +41,7 @@ pub enum EnergyKind {
 
 /// Where an iterative method starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
     /// Harmonic, and Tutte where harmonic has flips (the paper's).
@@ -58,6 +61,7 @@ pub enum Start {
 
 /// What to do with a surface that is not a disk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum CutPolicy {
     /// Cut it to a disk along short seams.
@@ -69,6 +73,7 @@ pub enum CutPolicy {
 
 /// All options of a parameterization; `Default` is the paper's choice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase", default, deny_unknown_fields)]
 pub struct ParameterizationOptions {
     /// The method.

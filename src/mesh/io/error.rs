@@ -1,7 +1,8 @@
 //! Why a file cannot be read, and where.
 
 /// What kind of trouble a [`ParseError`] is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum ParseErrorKind {
     /// Nothing in the file.
@@ -39,7 +40,7 @@ impl ParseErrorKind {
 }
 
 /// Why a file cannot be read, and where.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
 #[error("line {line}, column {column}: {what}")]
 pub struct ParseError {
     /// 1-based line.

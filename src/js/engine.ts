@@ -1,0 +1,200 @@
+// The synchronous API over one instance of the wasm module. The worker and `foldfree/core` share it.
+import type * as Bindings from './single/foldfree.js';
+import { FoldfreeError, toFoldfreeError } from './error.js';
+import { fileBytes, isArrays, needFormat } from './input.js';
+import {
+  dispose,
+  type Certificate, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
+  type ParameterizeOptions, type Result, type ShapeInfo, type SolverInfo, type Step, type StepReport, type Texture,
+} from './types.js';
+
+/** The exports of one of the two wasm builds. */
+export type WasmBindings = typeof Bindings;
+
+/** Calls into wasm; what it throws comes out as a `FoldfreeError`. */
+function guard<T>(call: () => T): T {
+  try {
+    return call();
+  } catch (thrown) {
+    throw toFoldfreeError(thrown);
+  }
+}
+
+/** A mesh in wasm memory, with copies of its arrays. */
+export class CoreMesh implements MeshInfo {
+  readonly positions: Float64Array;
+  readonly indices: Uint32Array;
+  readonly notes: string[];
+  readonly texture?: Texture;
+  /** @internal */
+  readonly handle: Bindings.WasmMesh;
+
+  /** @internal */
+  constructor(handle: Bindings.WasmMesh) {
+    this.handle = handle;
+    this.positions = handle.positions;
+    this.indices = handle.indices;
+    this.notes = handle.notes;
+    const coordinates = handle.textureCoordinates;
+    const corners = handle.textureCorners;
+    if (coordinates && corners) this.texture = { coordinates, corners };
+  }
+
+  get vertexCount(): number {
+    return this.positions.length / 3;
+  }
+
+  get triangleCount(): number {
+    return this.indices.length / 3;
+  }
+
+  /** Gives its wasm memory back. */
+  free(): void {
+    this.handle.free();
+  }
+
+  [dispose](): void {
+    this.free();
+  }
+}
+
+/** A map being computed, one `step()` an iteration. */
+export class CoreSolver implements SolverInfo, Iterable<Step> {
+  readonly start: Step;
+  readonly mesh: MeshArrays;
+  readonly inputVertices: Uint32Array;
+  readonly seamEdges: number;
+  readonly startKind: SolverInfo['startKind'];
+  readonly notes: string[];
+  readonly setupSeconds: number;
+  /** Precision of the positions of every step. */
+  frames: FramePrecision;
+  readonly #handle: Bindings.WasmParameterization;
+
+  /** @internal */
+  constructor(handle: Bindings.WasmParameterization, frames: FramePrecision) {
+    this.#handle = handle;
+    this.frames = frames;
+    this.mesh = { positions: handle.positions, indices: handle.indices };
+    this.inputVertices = handle.inputVertices;
+    this.seamEdges = handle.seamEdges;
+    this.startKind = handle.startKind;
+    this.notes = handle.notes;
+    this.setupSeconds = handle.setupSeconds;
+    this.start = guard(() => this.frame());
+  }
+
+  /** One iteration of the method. */
+  step(): Step {
+    return guard(() => this.#withMap(this.#handle.step()));
+  }
+
+  /** One iteration, without copying the map out. */
+  advance(): StepReport {
+    return guard(() => this.#handle.step());
+  }
+
+  /** The newest iterate again. */
+  frame(): Step {
+    return this.#withMap(this.#handle.report());
+  }
+
+  /** Weight over rest weight a triangle; empty where the method has no weights. */
+  weights(): Float32Array {
+    return this.#handle.weights();
+  }
+
+  /** Steps until the status is no longer `running`. */
+  *[Symbol.iterator](): Iterator<Step> {
+    let status = guard(() => this.#handle.report()).status;
+    while (status === 'running') {
+      const step = this.step();
+      yield step;
+      status = step.status;
+    }
+  }
+
+  /** The newest map with its certificate. */
+  result(): Result {
+    return guard(() => ({
+      uv: this.#handle.uv(),
+      certificate: this.#handle.certificate(),
+      inputVertices: this.inputVertices.slice(),
+    }));
+  }
+
+  /** The input surface as an OBJ file with the map as texture coordinates. */
+  exportObj(): Uint8Array {
+    return guard(() => this.#handle.exportObj());
+  }
+
+  /** Gives its wasm memory back. */
+  free(): void {
+    this.#handle.free();
+  }
+
+  [dispose](): void {
+    this.free();
+  }
+
+  #withMap(report: StepReport): Step {
+    const positions = this.frames === 'f32' ? this.#handle.uvSingle() : this.#handle.uv();
+    return { ...report, positions, distortion: this.#handle.distortion() };
+  }
+}
+
+/** One instance of the library. */
+export class Core {
+  /** Version of the library. */
+  readonly version: string;
+  /** Threads that parallel loops use. */
+  readonly threads: number;
+  /** The sample shapes `generate` makes. */
+  readonly shapes: ShapeInfo[];
+  readonly #bindings: WasmBindings;
+
+  /** @internal */
+  constructor(bindings: WasmBindings) {
+    this.#bindings = bindings;
+    this.version = bindings.version();
+    this.threads = bindings.threadCount();
+    this.shapes = bindings.shapes();
+  }
+
+  /** Reads a mesh file (bytes or text; a format is needed), or takes arrays. */
+  mesh(data: MeshData, format?: MeshFormat): CoreMesh {
+    const { WasmMesh } = this.#bindings;
+    if (isArrays(data)) return guard(() => new CoreMesh(WasmMesh.fromArrays(data.positions, data.indices)));
+    const known = needFormat(format);
+    return guard(() => new CoreMesh(WasmMesh.fromBytes(fileBytes(data), known)));
+  }
+
+  /** Generates a sample shape of about so many triangles. */
+  generate(name: string, triangles: number): CoreMesh {
+    if (!(triangles >= 1 && triangles <= 0xffff_ffff)) {
+      throw new FoldfreeError('invalid-argument', `triangles: ${triangles} is not a number of triangles`);
+    }
+    return guard(() => new CoreMesh(this.#bindings.WasmMesh.generate(name, triangles)));
+  }
+
+  /** Validates, cuts, computes the start and builds the solver: all that comes before the first step. */
+  parameterize(mesh: CoreMesh, options: ParameterizeOptions & { frames?: FramePrecision } = {}): CoreSolver {
+    const { frames = 'f64', ...rest } = options;
+    return guard(() => new CoreSolver(new this.#bindings.WasmParameterization(mesh.handle, rest), frames));
+  }
+
+  /** Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`. */
+  check(mesh: CoreMesh, uv: Float64Array): Certificate {
+    return guard(() => this.#bindings.checkMap(mesh.handle, uv));
+  }
+
+  /** All options with the values they have when left out. */
+  defaultOptions(): Required<ParameterizeOptions> {
+    return guard(() => this.#bindings.defaultOptions() as Required<ParameterizeOptions>);
+  }
+
+  /** Bytes of wasm memory; it never shrinks, so this is also its peak. */
+  get memoryBytes(): number {
+    return this.#bindings.memoryBytes();
+  }
+}

@@ -1,0 +1,82 @@
+// The types that the synchronous core and the worker client share.
+import type { Certificate, ParameterizationOptions, ShapeInfo, Start, StepReport } from './single/foldfree.js';
+
+export type { Certificate, ParameterizationOptions, ShapeInfo, Start, StepReport };
+export type {
+  BoundaryCrossing, Criterion, CutPolicy, EnergyKind, Method, Phase, PhaseKind,
+} from './single/foldfree.js';
+
+/** Options of `parameterize`; what is left out has the paper's value. */
+export type ParameterizeOptions = ParameterizationOptions;
+
+/** File formats that can be read. */
+export type MeshFormat = 'obj' | 'off';
+
+/** A triangle mesh as arrays. */
+export interface MeshArrays {
+  /** n × 3, interleaved. */
+  positions: Float64Array;
+  /** m × 3, 0-based; counter-clockwise seen from outside. */
+  indices: Uint32Array;
+}
+
+/** Texture coordinates a file came with. */
+export interface Texture {
+  /** k × 2, interleaved. */
+  coordinates: Float64Array;
+  /** For every corner of every triangle (m × 3) the index of its coordinate. */
+  corners: Uint32Array;
+}
+
+/** Everything JavaScript keeps of a mesh. */
+export interface MeshInfo extends MeshArrays {
+  /** What reading mended or noticed, in words. */
+  notes: string[];
+  /** Texture coordinates the file came with. */
+  texture?: Texture;
+}
+
+/** What a mesh can be made of: a file's bytes or text, or arrays. */
+export type MeshData = Uint8Array | ArrayBuffer | string | MeshArrays;
+
+/** Precision of the positions that come with a step. */
+export type FramePrecision = 'f32' | 'f64';
+
+/** A step's report with the map it led to. */
+export interface Step extends StepReport {
+  /** The map, n × 2, interleaved, in the units of the input. */
+  positions: Float64Array | Float32Array;
+  /** Symmetric Dirichlet density a triangle: 1 where isometric, infinite where inverted. */
+  distortion: Float32Array;
+}
+
+/** What is known of a parameterization before its first step. */
+export interface SolverInfo {
+  /** Iteration 0. */
+  start: Step;
+  /** The disk that is flattened: the input, cut if it had to be; triangle i is the input's triangle i. */
+  mesh: MeshArrays;
+  /** For every vertex of that disk its index in the input mesh. */
+  inputVertices: Uint32Array;
+  /** Number of edges that were cut, 0 for a disk. */
+  seamEdges: number;
+  /** The start that was used: what `automatic` became. */
+  startKind: Start;
+  /** What was mended or chosen, in words. */
+  notes: string[];
+  /** Seconds that validation, cutting, the start and the factorisation took. */
+  setupSeconds: number;
+}
+
+/** A finished map. */
+export interface Result {
+  /** The map, n × 2, interleaved, in the units of the input, one a vertex of the flattened disk. */
+  uv: Float64Array;
+  /** The exact checks of that map. */
+  certificate: Certificate;
+  /** For every vertex of the flattened disk its index in the input mesh. */
+  inputVertices: Uint32Array;
+}
+
+/** `Symbol.dispose`, also where the engine does not have it yet (`using` needs it). */
+export const dispose: typeof Symbol.dispose = Symbol.dispose ?? Symbol.for('Symbol.dispose');

@@ -1,0 +1,151 @@
+//! A parameterization, step by step.
+
+use super::error::{Fallible, invalid_argument, thrown};
+use super::mesh::{WasmMesh, flat2, flat3};
+use super::options::parameterization_options;
+use super::report::StepReport;
+use crate::certificate::Certificate;
+use crate::mesh::io::{self, CornerTexture};
+use crate::mesh::SurfaceMesh;
+use crate::parameterization::Parameterization;
+use glam::DVec2;
+use js_sys::{Float32Array, Float64Array, Uint32Array};
+use wasm_bindgen::prelude::*;
+
+/// A map being computed. `free()` it when done.
+#[wasm_bindgen]
+pub struct WasmParameterization {
+    inner: Parameterization,
+}
+
+#[wasm_bindgen]
+impl WasmParameterization {
+    /// Validates, cuts, computes the start and builds the solver.
+    #[wasm_bindgen(constructor)]
+    pub fn new(
+        mesh: &WasmMesh,
+        #[wasm_bindgen(unchecked_param_type = "ParameterizationOptions | undefined")] options: &JsValue,
+    ) -> Fallible<WasmParameterization> {
+        let options = parameterization_options(options)?;
+        let inner = Parameterization::new(mesh.mesh(), &options).map_err(thrown)?;
+        Ok(Self { inner })
+    }
+
+    /// One iteration of the method.
+    #[wasm_bindgen(unchecked_return_type = "StepReport")]
+    pub fn step(&mut self) -> Fallible<JsValue> {
+        let report = self.inner.step().map_err(thrown)?;
+        to_js(&StepReport::from(&report))
+    }
+
+    /// The newest report: iteration 0 before any step.
+    #[wasm_bindgen(unchecked_return_type = "StepReport")]
+    pub fn report(&self) -> Fallible<JsValue> {
+        to_js(&StepReport::from(self.inner.solver().report()))
+    }
+
+    /// The map, n × 2, interleaved, in the units of the input.
+    pub fn uv(&self) -> Float64Array {
+        flat2(&self.inner.uv())
+    }
+
+    /// The map in single precision: half the bytes, enough to draw.
+    #[wasm_bindgen(js_name = uvSingle)]
+    pub fn uv_single(&self) -> Float32Array {
+        let flat: Vec<f32> = self.inner.uv().iter().flat_map(|uv| uv.as_vec2().to_array()).collect();
+        Float32Array::from(flat.as_slice())
+    }
+
+    /// Symmetric Dirichlet density a triangle, 1 where isometric, infinite where inverted.
+    pub fn distortion(&self) -> Float32Array {
+        Float32Array::from(self.inner.solver().inspect().distortion.as_slice())
+    }
+
+    /// Weight over rest weight a triangle; empty where the method has no weights.
+    pub fn weights(&self) -> Float32Array {
+        Float32Array::from(self.inner.solver().inspect().weights.as_slice())
+    }
+
+    /// Positions of the disk that is flattened, n × 3, interleaved.
+    #[wasm_bindgen(getter)]
+    pub fn positions(&self) -> Float64Array {
+        flat3(&self.inner.mesh().positions)
+    }
+
+    /// Triangles of that disk, m × 3, in the order of the input's.
+    #[wasm_bindgen(getter)]
+    pub fn indices(&self) -> Uint32Array {
+        Uint32Array::from(self.inner.mesh().simplices.as_flattened())
+    }
+
+    /// For every vertex of that disk its index in the input mesh.
+    #[wasm_bindgen(getter, js_name = inputVertices)]
+    pub fn input_vertices(&self) -> Uint32Array {
+        Uint32Array::from(self.inner.input_vertices())
+    }
+
+    /// Number of edges that were cut.
+    #[wasm_bindgen(getter, js_name = seamEdges)]
+    pub fn seam_edges(&self) -> usize {
+        self.inner.seam_edges()
+    }
+
+    /// What was mended or chosen, in words.
+    #[wasm_bindgen(getter)]
+    pub fn notes(&self) -> Vec<String> {
+        self.inner.notes().to_vec()
+    }
+
+    /// The start that was used.
+    #[wasm_bindgen(getter, js_name = startKind, unchecked_return_type = "Start")]
+    pub fn start_kind(&self) -> Fallible<JsValue> {
+        to_js(&self.inner.start_kind())
+    }
+
+    /// Seconds that validation, cutting, the start and the factorisation took.
+    #[wasm_bindgen(getter, js_name = setupSeconds)]
+    pub fn setup_seconds(&self) -> f64 {
+        self.inner.setup_seconds()
+    }
+
+    /// The exact checks of the newest map.
+    #[wasm_bindgen(unchecked_return_type = "Certificate")]
+    pub fn certificate(&self) -> Fallible<JsValue> {
+        to_js(&self.inner.certificate())
+    }
+
+    /// The input surface as OBJ with the map as texture coordinates.
+    #[wasm_bindgen(js_name = exportObj)]
+    pub fn export_obj(&self) -> Vec<u8> {
+        let disk = self.inner.mesh();
+        let input = self.inner.input_vertices();
+        // Seams close again: every corner names its input vertex, and its own texture coordinate.
+        let vertices = input.iter().max().map_or(0, |&last| last as usize + 1);
+        let mut positions = vec![glam::DVec3::ZERO; vertices];
+        for (&vertex, &position) in input.iter().zip(&disk.positions) {
+            positions[vertex as usize] = position;
+        }
+        let simplices = disk.simplices.iter().map(|face| face.map(|v| input[v as usize])).collect();
+        let texture = CornerTexture {
+            coordinates: self.inner.uv(),
+            corners: disk.simplices.clone(),
+        };
+        io::write_obj(&SurfaceMesh { positions, simplices }, Some(&texture))
+    }
+}
+
+/// Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`.
+#[wasm_bindgen(js_name = checkMap, unchecked_return_type = "Certificate")]
+pub fn check_map(mesh: &WasmMesh, uv: &[f64]) -> Fallible<JsValue> {
+    let (points, rest) = uv.as_chunks::<2>();
+    let vertices = mesh.mesh().positions.len();
+    if !rest.is_empty() || points.len() != vertices {
+        return Err(invalid_argument("uv", &format!("the length is {}, expected {}", uv.len(), 2 * vertices)));
+    }
+    let points: Vec<DVec2> = points.iter().copied().map(DVec2::from_array).collect();
+    to_js(&Certificate::of_map(mesh.mesh(), &points))
+}
+
+fn to_js(value: &impl serde::Serialize) -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(value).map_err(JsValue::from)
+}

@@ -1,0 +1,65 @@
+// What is packed: the right files, and exports that bundlers and TypeScript resolve.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync, statSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { describe, it } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { gzipSync } from 'node:zlib';
+import { publint } from 'publint';
+import { installPacked, top } from './packed.mjs';
+
+const { folder, tarball, home, files } = installPacked();
+const tool = (path, args, options) =>
+  execFileSync(process.execPath, [fileURLToPath(new URL(`node_modules/${path}`, top)), ...args], { encoding: 'utf8', ...options });
+
+describe('the packed package', () => {
+  it('has what it exports and nothing else', () => {
+    for (const file of ['pkg/index.js', 'pkg/core.d.ts', 'pkg/worker.js', 'pkg/single/foldfree_bg.wasm', 'pkg/threads/foldfree_bg.wasm', 'LICENSE-MIT', 'README.md']) {
+      assert.ok(files.includes(file), file);
+    }
+    assert.deepEqual(files.filter((file) => /\.(rs|ts|mjs|stamp|toml)$/.test(file) && !file.endsWith('.d.ts')), []);
+  });
+
+  it('has a small single-thread wasm', () => {
+    const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 600_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 250_000);
+  });
+
+  it('pleases publint', async () => {
+    const { messages } = await publint({ pkgDir: home, strict: true });
+    assert.deepEqual(messages, []);
+  });
+
+  it('pleases attw', () => {
+    tool('@arethetypeswrong/cli/dist/index.js', [tarball, '--profile', 'esm-only', '--exclude-entrypoints', './foldfree.wasm', './foldfree-threads.wasm']);
+  });
+
+  it('has types that fit its use', () => {
+    writeFileSync(join(folder, 'use.ts'), `
+      import { load, type Step } from 'foldfree';
+      import { initSync, type FoldfreeError } from 'foldfree/core';
+      const foldfree = await load({ threads: 'auto', onProgress: (loaded, total) => void (loaded / total) });
+      const mesh = await foldfree.mesh(new Uint8Array(), 'obj');
+      const solver = await foldfree.parameterize(mesh, { method: 'wrapd', energy: 'symmetric-dirichlet', start: 'tutte' });
+      for await (const step of solver) { const energy: number = step.energy; void energy; }
+      const { uv, certificate } = await solver.result();
+      const sure: boolean = certificate.globallyInjective;
+      const map: Float64Array = uv;
+      // @ts-expect-error there is no such option
+      await foldfree.parameterize(mesh, { iterations: 5 });
+      // @ts-expect-error there is no such method
+      await foldfree.parameterize(mesh, { method: 'magic' });
+      const core = initSync(new Uint8Array());
+      const first: Step = core.parameterize(core.generate('torus', 100)).start;
+      export { sure, map, first, type FoldfreeError };
+    `);
+    const options = ['--noEmit', '--strict', '--target', 'ES2022', '--module', 'NodeNext', '--lib', 'ES2022,ESNext.Disposable,DOM', '--types', '', '--exactOptionalPropertyTypes'];
+    try {
+      tool('typescript/bin/tsc', [...options, 'use.ts'], { cwd: folder });
+    } catch (error) {
+      assert.fail(error.stdout);
+    }
+  });
+});
