@@ -1,4 +1,5 @@
 //! 2×2 matrices by another library, to compare the crate's own with.
+#![allow(dead_code)]
 
 use nalgebra_sparse::na::{Matrix2, SVD};
 
