@@ -58,6 +58,9 @@ fn error(computed: f64, exact: &Big, scale: f64) -> f64 {
 /// A few roundings; every bound below is relative to σ₁.
 const SMALL: f64 = 2e-15;
 
+/// Parts of a matrix (α or β) below this are taken to have no direction.
+const TINY: f64 = 1e-150;
+
 #[track_caller]
 fn check(f: [f64; 4]) {
     let exact = truth(f);
@@ -71,7 +74,7 @@ fn check(f: [f64; 4]) {
         assert!(e <= SMALL, "σ{} of {f:?}: {} is off by {e:e}", i + 1, sigma[i]);
     }
     for (back, f_k) in Plane::from_svd(sigma, frame).iter().zip(f) {
-        assert!((back - f_k).abs() <= SMALL * scale, "from_svd of {f:?}: {back}");
+        assert!((back - f_k).abs() <= SMALL * scale + TINY, "from_svd of {f:?}: {back}");
     }
 
     let (s, polar) = Plane::polar(f);
@@ -80,6 +83,9 @@ fn check(f: [f64; 4]) {
     };
     // where σ₁+σ₂ is small against σ₁, R and S turn with the rounding of F
     let sum = (&exact.sigma[0] + &exact.sigma[1]).to_f64().value();
+    if sum < 2.0 * TINY {
+        return;
+    }
     let turning = 1.0 + scale / sum;
     let entries = [s[0] + s[1], s[2], s[0] - s[1]];
     for (entry, exact) in entries.iter().zip(&stretch) {
@@ -100,7 +106,7 @@ fn check(f: [f64; 4]) {
         assert!(e <= 2.0 * SMALL, "eigenvalue {} of {f:?}: off by {e:e}", i + 1);
     }
     for (back, s) in Plane::from_eigen(values, vectors).iter().zip(s) {
-        assert!((back - s).abs() <= SMALL * scale, "from_eigen of {f:?}: {back}, {s}");
+        assert!((back - s).abs() <= SMALL * scale + TINY, "from_eigen of {f:?}: {back}, {s}");
     }
     let norm = &exact.sigma[0] * &exact.sigma[0] + &exact.sigma[1] * &exact.sigma[1];
     let e = error(Plane::symmetric_norm_squared(s), &norm, scale * scale);
@@ -181,7 +187,7 @@ fn what_is_too_small_to_square_vanishes() {
             let (sigma, frame) = Plane::svd(f);
             for i in 0..2 {
                 let e = error(sigma[i], &exact.sigma[i], 1.0);
-                assert!(e <= 1e-150, "σ{} of {f:?}: {}", i + 1, sigma[i]);
+                assert!(e <= TINY, "σ{} of {f:?}: {}", i + 1, sigma[i]);
             }
             let back = Plane::from_svd([1.0, 1.0], frame);
             let norm: f64 = back.iter().map(|x| x * x).sum();
@@ -284,6 +290,6 @@ fn registers_give_the_bits_of_their_elements() {
 #[test]
 fn so_do_registers_of_half_the_width() {
     if let Some(simd) = pulp::x86::V3::try_new() {
-        registers_agree(|work| simd.vectorize(work));
+        registers_agree(|work| simd.vectorize(|| work.with_simd(simd)));
     }
 }
