@@ -2,7 +2,8 @@
 //! nothing but the length.
 
 use crate::parallel;
-use pulp::{Arch, Simd, WithSimd};
+use crate::space::dispatch;
+use pulp::{Simd, WithSimd};
 
 /// Entries of a block: it stays in the first-level cache while several vectors pass over it.
 const BLOCK: usize = 1024;
@@ -39,7 +40,7 @@ pub fn dots<'a>(
                 let start = range.start + k * BLOCK;
                 for (sum, a) in sums.iter_mut().zip(vectors.clone()) {
                     let a = &a[start..start + b.len()];
-                    *sum += Arch::new().dispatch(Dot { a, b });
+                    *sum += dispatch(Dot { a, b });
                 }
             }
         };
@@ -118,7 +119,7 @@ pub fn add_combination<'a>(
             let start = (chunk * BLOCKS + block) * BLOCK;
             for (c, x) in terms.clone() {
                 let x = &x[start..start + y.len()];
-                Arch::new().dispatch(Axpy { c, x, y });
+                dispatch(Axpy { c, x, y });
             }
         }
     });

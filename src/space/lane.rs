@@ -6,7 +6,7 @@
 //! operations contracts to a fused multiply-add, so that every width gives the same bits.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 /// Field arithmetic, and constants by [`Scalar::lift`].
 pub trait Scalar:
@@ -198,4 +198,19 @@ impl<S: Simd> Lane for Pack<S> {
     fn any(self, mask: S::m64s) -> bool {
         self.simd.first_true_m64s(mask) < Self::WIDTH
     }
+}
+
+/// Runs a kernel with the widest instruction set of this machine.
+pub fn dispatch<K: WithSimd>(kernel: K) -> K::Output {
+    #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+    {
+        // `pulp::Arch` would keep a scalar copy of every kernel beside the one that is used: here the
+        // choice was made when the module was compiled, and an engine without simd128 refuses it whole
+        match pulp::wasm::Simd128::try_new() {
+            Some(simd) => kernel.with_simd(simd),
+            None => unreachable!("the module was compiled for simd128"),
+        }
+    }
+    #[cfg(not(all(target_arch = "wasm32", target_feature = "simd128")))]
+    pulp::Arch::new().dispatch(kernel)
 }

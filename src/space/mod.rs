@@ -6,7 +6,7 @@
 mod lane;
 mod plane;
 
-pub use lane::{Lane, Pack, Scalar};
+pub use lane::{Lane, Pack, Scalar, dispatch};
 pub use plane::Plane;
 
 /// A fixed number of components, one register each.

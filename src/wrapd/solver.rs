@@ -13,7 +13,7 @@ use crate::optim::{
     BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
 };
 use crate::parallel;
-use crate::space::Space;
+use crate::space::{Space, dispatch};
 use core::marker::PhantomData;
 use web_time::Instant;
 
@@ -136,7 +136,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             &mut self.forces,
             chunk,
             |_, block, forces| {
-                block.sums = pulp::Arch::new().dispatch(Kernel::<S, C, E> {
+                block.sums = dispatch(Kernel::<S, C, E> {
                     pass,
                     block,
                     positions: x,
