@@ -4,6 +4,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { initSync } from '../../pkg/core.js';
+import { preparedStart } from '../prepare-start.mjs';
 import { download, drop, launch, openPage, playToTheEnd, root, status, wavySheet } from './harness.mjs';
 
 let site;
@@ -24,6 +25,19 @@ function onPage(name, options, body) {
 }
 
 describe('opening', () => {
+  test('the prepared start is up to date (else: node www/prepare-start.mjs)', () => {
+    const read = (bytes) => {
+      const [, vertices, triangles] = new Uint32Array(bytes.buffer, bytes.byteOffset, 3);
+      const floats = new Float32Array(bytes.buffer.slice(bytes.byteOffset + 64, bytes.byteOffset + bytes.length));
+      return { vertices, triangles, positions: floats.subarray(0, 3 * vertices), map: floats.subarray(-2 * vertices) };
+    };
+    const [kept, made] = [read(readFileSync(join(root, 'www/assets/start.bin'))), read(preparedStart())];
+    assert.deepEqual([kept.vertices, kept.triangles], [made.vertices, made.triangles]);
+    for (const part of ['positions', 'map']) {
+      assert.ok(kept[part].every((x, i) => Math.abs(x - made[part][i]) < 1e-5), part);
+    }
+  });
+
   onPage('shows the folded start before the solver has come', {
     ready: false,
     prepare: (page) => page.route(/\/pkg\/(single|threads)\/.*\.wasm$/, async (route) => {

@@ -239,6 +239,34 @@ fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     }
 }
 
+/// How often the boundary of the newest map meets itself.
+fn crossings_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+    let newest = bench.shown + 1 == bench.run.records.len();
+    if !newest || bench.crossings.is_empty() {
+        return;
+    }
+    let words = match bench.crossings.len() {
+        1 => "boundary crosses itself once".to_owned(),
+        n => format!("boundary crosses itself {} times", whole(n)),
+    };
+    let at = pos2(rect.right() - 14.0, rect.top() + 10.0 + 19.0 * bench.text);
+    let font = style::regular(style::SMALL * bench.text);
+    let place = painter.text(
+        at,
+        Align2::RIGHT_TOP,
+        words,
+        font,
+        style::colour(bench.theme.warn),
+    );
+    let middle = pos2(place.left() - 9.0, place.center().y);
+    for arm in [vec2(3.5, 3.5), vec2(3.5, -3.5)] {
+        painter.line_segment(
+            [middle - arm, middle + arm],
+            Stroke::new(1.8, style::colour(VERMILION)),
+        );
+    }
+}
+
 /// How many are inverted, with their hatch; returns its left edge.
 fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) -> f32 {
     let (theme, text) = (bench.theme, bench.text);
@@ -250,6 +278,7 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) -> f32 {
     } else {
         format!("{} inverted", whole(reported))
     };
+    crossings_key(painter, rect, bench);
     let ink = if reported == 0 {
         theme.quiet
     } else {
