@@ -70,7 +70,7 @@ class Board {
   facts(pairs) { this.canvas.setFacts(pairs.flat()); }
   theme(dark) { this.canvas.setTheme(dark); }
   view(name) { this.canvas.setView(name); }
-  switch(name, on) { this.canvas.set(name, on); }
+  toggle(name) { this.canvas.toggle(name); }
   fit() { this.canvas.fitViews(); }
   reducedMotion(on) { this.canvas.setReducedMotion(on); }
 

@@ -6,6 +6,7 @@ import { acceptDrops, readMeshFile, save } from './files.js';
 import { listenToKeys } from './keys.js';
 import { clearNotice, describe, notice } from './notice.js';
 import { Session } from './session.js';
+import { connectViews, flip, flipTheme, follow, project, projecting } from './views.js';
 import { METHODS, ending, number, spoken, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
@@ -299,58 +300,6 @@ function invite() {
       : `Nothing is upside down in this map. ${name} will make it less distorted.`;
 }
 
-// ——— theme, views, projector ———
-
-const darkScheme = matchMedia('(prefers-color-scheme: dark)');
-const isDark = () => (document.documentElement.dataset.theme ?? (darkScheme.matches ? 'dark' : 'light')) === 'dark';
-darkScheme.addEventListener('change', () => board?.theme(isDark()));
-
-function flipTheme() {
-  const theme = isDark() ? 'light' : 'dark';
-  document.documentElement.dataset.theme = theme;
-  const asked = new URLSearchParams(location.search);
-  asked.set('theme', theme);
-  history.replaceState(null, '', `?${asked}`);
-  board?.theme(theme === 'dark');
-}
-
-const narrow = matchMedia('(max-width: 719.98px)');
-let tab = 'map';
-
-function arrange() {
-  board?.view(narrow.matches ? tab : 'all');
-  const wide = innerWidth >= 1000;
-  const box = $('invite').style;
-  // Over the middle of the map, in the lower third of it.
-  const projecting = document.body.classList.contains('projecting');
-  const column = narrow.matches ? 0 : wide && !projecting ? 292 : 0;
-  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * 0.75)`);
-  box.setProperty('--invite-y', narrow.matches ? '50%' : '34%');
-}
-
-function choose(view) {
-  tab = view;
-  for (const button of document.querySelectorAll('[role="tab"]')) {
-    const on = button.dataset.view === view;
-    button.setAttribute('aria-selected', String(on));
-    button.tabIndex = on ? 0 : -1;
-  }
-  arrange();
-}
-
-function project() {
-  const on = document.body.classList.toggle('projecting');
-  $('projector').setAttribute('aria-pressed', String(on));
-  board?.projector(on ? 1.9 : 1, !on);
-  arrange();
-}
-
-const switches = { wireframe: false, tinted: true, gap: false, seconds: false };
-function flip(name) {
-  switches[name] = !switches[name];
-  board?.switch(name, switches[name]);
-}
-
 // ——— controls ———
 
 async function change(key, value) {
@@ -448,31 +397,19 @@ function connect() {
     style.right = `${Math.max(8, innerWidth - at.right)}px`;
   });
   $('share').addEventListener('click', share);
-  $('theme').addEventListener('click', flipTheme);
-  $('projector').addEventListener('click', project);
   $('help').addEventListener('click', help);
   $('setup-toggle').addEventListener('click', () => {
     const shownNow = $('setup').classList.toggle('shown');
     $('setup-toggle').setAttribute('aria-expanded', String(shownNow));
   });
-  const tabs = [...document.querySelectorAll('[role="tab"]')];
-  for (const button of tabs) button.addEventListener('click', () => choose(button.dataset.view));
-  tabs[0].parentElement.addEventListener('keydown', (event) => {
-    const turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!turn) return;
-    const next = tabs[(tabs.findIndex((button) => button.dataset.view === tab) + turn + tabs.length) % tabs.length];
-    choose(next.dataset.view);
-    next.focus();
-  });
-  narrow.addEventListener('change', arrange);
-  addEventListener('resize', arrange);
+  connectViews();
   const methods = Object.keys(METHODS);
   listenToKeys({
     ' ': play, ArrowRight: () => steps(1), 'Shift+ArrowRight': () => steps(10),
     ArrowLeft: () => { pause(); show(shown - 1); }, 'Shift+ArrowLeft': () => { pause(); show(shown - 10); },
     Home: () => { pause(); show(0); }, End: () => { pause(); show(records.length - 1); },
     r: reset, f: () => board?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
-    p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: clearNotice,
+    p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     ...Object.fromEntries(methods.map((method, i) => [String(i + 1), () => change('method', method)])),
   });
 }
@@ -506,11 +443,7 @@ async function begin() {
     return notice('The drawing board did not start', `${describe(error)} The page needs WebGL 2 and WebAssembly.`);
   }
   quietCanvas();
-  board.theme(isDark());
-  const still = matchMedia('(prefers-reduced-motion: reduce)');
-  board.reducedMotion(still.matches);
-  still.addEventListener('change', () => board.reducedMotion(still.matches));
-  arrange();
+  follow(board);
 
   const drawn = await prepared;
   if (drawn) {

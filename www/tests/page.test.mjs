@@ -110,6 +110,19 @@ describe('solving', () => {
     assert.ok(await page.isVisible('#help-dialog'));
   });
 
+  onPage('projector, theme and switches of the views', { query: '?triangles=1000&start=automatic' }, async (page) => {
+    for (const key of ['w', 'c', 'e', 'x', 'f']) await page.keyboard.press(key);
+    await page.keyboard.press('p');
+    assert.ok(await page.isHidden('#sample'));
+    assert.ok(await page.isVisible('#status'));
+    await page.keyboard.press('Escape');
+    assert.ok(await page.isVisible('#sample'));
+    const before = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+    await page.keyboard.press('t');
+    assert.notEqual(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), before);
+    assert.match(page.url(), /theme=dark/);
+  });
+
   onPage('every solver runs on the same problem, and its curve stays', { query: '?triangles=1000&start=automatic' }, async (page) => {
     for (const method of ['admm-pd', 'w-admm', 'r-admm', 'arap', 'lscm', 'harmonic', 'tutte', 'wrapd']) {
       await page.selectOption('#method', method);

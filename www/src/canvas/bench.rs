@@ -42,6 +42,16 @@ pub enum PlotHeight {
     Gap,
 }
 
+impl PlotHeight {
+    /// The one it is not.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Values => Self::Gap,
+            Self::Gap => Self::Values,
+        }
+    }
+}
+
 /// Something the page must hear of.
 pub enum Event {
     /// A person chose an iterate on the plot.

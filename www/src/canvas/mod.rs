@@ -18,7 +18,7 @@ use web_sys::HtmlCanvasElement;
 
 use crate::history::Record;
 use crate::layout::View;
-use bench::{Bench, PlotHeight};
+use bench::Bench;
 
 /// The canvas of the page. All arrays are copied.
 #[wasm_bindgen]
@@ -165,19 +165,13 @@ impl Canvas {
         self.change(|bench| bench.inspector = shown);
     }
 
-    /// Sets a switch: `wireframe`, `tinted`, `gap`, `seconds`.
-    pub fn set(&self, name: &str, on: bool) {
+    /// Turns a switch: `wireframe`, `tinted`, `gap`, `seconds`.
+    pub fn toggle(&self, name: &str) {
         self.change(|bench| match name {
-            "wireframe" => bench.wireframe = on,
-            "tinted" => bench.tinted = on,
-            "gap" => {
-                bench.plot_height = if on {
-                    PlotHeight::Gap
-                } else {
-                    PlotHeight::Values
-                }
-            }
-            "seconds" => bench.plot_seconds = on,
+            "wireframe" => bench.wireframe = !bench.wireframe,
+            "tinted" => bench.tinted = !bench.tinted,
+            "gap" => bench.plot_height = bench.plot_height.other(),
+            "seconds" => bench.plot_seconds = !bench.plot_seconds,
             _ => {}
         });
     }

@@ -163,11 +163,7 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         "What the height is: the values, or how far above the lowest energy any run has reached here (E)",
     );
     if x.1 {
-        bench.plot_height = if gap {
-            PlotHeight::Values
-        } else {
-            PlotHeight::Gap
-        };
+        bench.plot_height = bench.plot_height.other();
     }
     let by = style::label(
         ui.painter(),
