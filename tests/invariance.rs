@@ -2,8 +2,8 @@
 //! order of vertices and faces.
 //!
 //! All of these change the last bits of every number, and an iteration passes on what it is given:
-//! energies agree to 1e-9, far above rounding (1e-16, times the condition of the Laplacian) and far
-//! below what any real dependence would show. Counts of inner iterations and reweighting are decisions
+//! energies agree to 1e-11 (measured: 1e-13), above rounding and far below what any real dependence would
+//! show. Counts of inner iterations and reweighting are decisions
 //! and must be the same.
 
 mod flattening;
@@ -85,7 +85,7 @@ fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, 
         let difference = (a.energy - b.energy).abs() / a.energy;
         if a.energy != b.energy {
             worst = worst.max(difference);
-            assert!(difference <= 1e-9, "{name} {method:?} {k}: {} {}", a.energy, b.energy);
+            assert!(difference <= 1e-11, "{name} {method:?} {k}: {} {}", a.energy, b.energy);
         }
         let decisions = [a, b].map(|r| (r.inverted, r.lbfgs_iterations, r.reweighted));
         assert_eq!(decisions[0], decisions[1], "{name} {method:?}, iteration {k}");
@@ -106,7 +106,7 @@ fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, 
         (a.largest_sigma, b.largest_sigma),
         (a.worst_anisotropy, b.worst_anisotropy),
     ] {
-        assert!(a == b || (a - b).abs() <= 1e-7 * a.abs(), "{name} {method:?}: {a} and {b}");
+        assert!(a == b || (a - b).abs() <= 1e-9 * a.abs(), "{name} {method:?}: {a} and {b}");
     }
 }
 
