@@ -42,7 +42,12 @@ fn mesh(positions: &[[f64; 3]], simplices: &[[u32; 3]]) -> SurfaceMesh {
 
 /// The unit square in four triangles round its middle, vertex 4.
 fn square() -> SurfaceMesh {
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
     let positions = [&corners[..], &[[0.5, 0.5, 0.0]]].concat();
     mesh(&positions, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
 }
@@ -59,7 +64,9 @@ fn refused(mesh: &SurfaceMesh, code: &str) -> MeshError {
             method,
             ..Default::default()
         };
-        let other = Parameterization::new(mesh, &options).err().map(|e| e.code());
+        let other = Parameterization::new(mesh, &options)
+            .err()
+            .map(|e| e.code());
         assert_eq!(other, Some(code), "{method:?}");
     }
     match new(mesh).err() {
@@ -79,7 +86,10 @@ fn a_good_mesh_is_not_refused() {
 
 #[test]
 fn nothing() {
-    assert_eq!(refused(&SurfaceMesh::default(), "empty-mesh"), MeshError::Empty);
+    assert_eq!(
+        refused(&SurfaceMesh::default(), "empty-mesh"),
+        MeshError::Empty
+    );
     refused(&mesh(&[[0.0; 3]; 4], &[]), "empty-mesh");
 }
 
@@ -114,7 +124,13 @@ fn the_same_face_twice() {
     let mut mesh = square();
     mesh.simplices.push([4, 1, 2]);
     let error = refused(&mesh, "duplicate-face");
-    assert_eq!(error, MeshError::DuplicateFace { first: 1, second: 4 });
+    assert_eq!(
+        error,
+        MeshError::DuplicateFace {
+            first: 1,
+            second: 4
+        }
+    );
 }
 
 #[test]
@@ -144,7 +160,9 @@ fn not_a_surface() {
     assert_eq!(error, expected);
 
     let mut bow_tie = square();
-    bow_tie.positions.extend([DVec3::new(3.0, 0.0, 0.0), DVec3::new(3.0, 1.0, 0.0)]);
+    bow_tie
+        .positions
+        .extend([DVec3::new(3.0, 0.0, 0.0), DVec3::new(3.0, 1.0, 0.0)]);
     bow_tie.simplices.push([1, 5, 6]);
     let error = refused(&bow_tie, "non-manifold-vertex");
     assert_eq!(error, MeshError::NonManifoldVertex { vertex: 1 });
@@ -156,7 +174,9 @@ fn not_a_surface() {
         let (lift, out) = (std::f64::consts::PI * f64::from(i) / 5.0).sin_cos();
         for side in [-0.3, 0.3] {
             let radius = 1.0 + side * out;
-            strip.positions.push(DVec3::new(radius * cos, radius * sin, side * lift));
+            strip
+                .positions
+                .push(DVec3::new(radius * cos, radius * sin, side * lift));
         }
         let (a, b) = (2 * i, 2 * i + 1);
         let (c, d) = if i == 4 { (1, 0) } else { (a + 2, b + 2) };
@@ -170,8 +190,12 @@ fn not_a_surface() {
 fn several_pieces() {
     let mut pieces = square();
     let other = square();
-    pieces.positions.extend(other.positions.iter().map(|&p| p + DVec3::X * 5.0));
-    pieces.simplices.extend(other.simplices.iter().map(|t| t.map(|v| v + 5)));
+    pieces
+        .positions
+        .extend(other.positions.iter().map(|&p| p + DVec3::X * 5.0));
+    pieces
+        .simplices
+        .extend(other.simplices.iter().map(|t| t.map(|v| v + 5)));
     let error = refused(&pieces, "several-components");
     assert_eq!(error, MeshError::SeveralComponents { components: 2 });
 }
@@ -196,7 +220,9 @@ fn cutting_refused() {
     }
     // a torus with a hole is no disk either
     ring.simplices.pop();
-    let error = Parameterization::new(&ring, &refusing).err().map(|e| e.code());
+    let error = Parameterization::new(&ring, &refusing)
+        .err()
+        .map(|e| e.code());
     assert_eq!(error, Some("not-a-disk"));
     // and a disk needs no cut
     assert!(Parameterization::new(&square(), &refusing).is_ok());
@@ -206,7 +232,9 @@ fn cutting_refused() {
 fn extreme_units_work_or_are_refused() {
     for exponent in [-300, -200, -160, -100, -60, -3, 3, 60, 100, 160, 200, 300] {
         let mut mesh = generate(Shape::Terrain, 100);
-        mesh.positions.iter_mut().for_each(|p| *p *= 10f64.powi(exponent));
+        mesh.positions
+            .iter_mut()
+            .for_each(|p| *p *= 10f64.powi(exponent));
         match new(&mesh) {
             Ok(mut p) => {
                 let report = p.step().unwrap();
@@ -237,7 +265,10 @@ fn options_out_of_range() {
             let error = Parameterization::new(&square(), &options).err();
             let named = matches!(
                 &error,
-                Some(Error::Build(BuildError::InvalidOption { option: "tolerance", .. }))
+                Some(Error::Build(BuildError::InvalidOption {
+                    option: "tolerance",
+                    ..
+                }))
             );
             assert!(named, "{error:?}");
             assert_eq!(error.map(|e| e.code()), Some("invalid-option"));
@@ -248,11 +279,19 @@ fn options_out_of_range() {
 /// The smallest meshes, by every method from every start.
 #[test]
 fn the_smallest_meshes() {
-    let triangle = mesh(&[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0]], &[[0, 1, 2]]);
+    let triangle = mesh(
+        &[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 1.0, 1.0]],
+        &[[0, 1, 2]],
+    );
     let mut pair = square();
     pair.simplices = vec![[0, 1, 2], [0, 2, 3]];
     let tetrahedron = mesh(
-        &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        &[
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+        ],
         &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]],
     );
     for (name, mesh) in [("triangle", triangle), ("pair", pair), ("square", square())] {
@@ -268,7 +307,8 @@ fn the_smallest_meshes() {
                     let mut p = Parameterization::new(&mesh, &options)
                         .unwrap_or_else(|e| panic!("{name} {method:?} {start:?}: {e}"));
                     for _ in 0..20 {
-                        p.step().unwrap_or_else(|e| panic!("{name} {method:?} {start:?}: {e}"));
+                        p.step()
+                            .unwrap_or_else(|e| panic!("{name} {method:?} {start:?}: {e}"));
                     }
                     assert!(p.uv().iter().all(|p| p.is_finite()));
                 }
@@ -290,7 +330,11 @@ fn the_smallest_meshes() {
 fn problem() -> (RestShape, Vec<f64>) {
     let mesh = square();
     let rest = RestShape::of_surface(&mesh, 1.0).unwrap();
-    let start = mesh.positions.iter().flat_map(|p| [p.x, 1.1 * p.y]).collect();
+    let start = mesh
+        .positions
+        .iter()
+        .flat_map(|p| [p.x, 1.1 * p.y])
+        .collect();
     (rest, start)
 }
 
@@ -323,37 +367,67 @@ fn problems_whose_parts_do_not_fit() {
     assert!(Wrapd::<Plane, RotationAware, _>::new(good, Arap, WrapdOptions::default()).is_ok());
 
     let short = &start[..start.len() - 1];
-    let error = solvers_refuse(Problem { start: short, ..good });
+    let error = solvers_refuse(Problem {
+        start: short,
+        ..good
+    });
     assert_eq!(error.code(), "wrong-length");
-    let error = solvers_refuse(Problem { start: &start[..6], ..good });
+    let error = solvers_refuse(Problem {
+        start: &start[..6],
+        ..good
+    });
     assert_eq!(error.code(), "wrong-length");
     for pins in [&[][..], &[5], &[0, u32::MAX]] {
         let error = solvers_refuse(Problem { pins, ..good });
-        assert!(matches!(error, BuildError::InvalidOption { option: "pins", .. }));
+        assert!(matches!(
+            error,
+            BuildError::InvalidOption { option: "pins", .. }
+        ));
     }
     for bad in [f64::NAN, f64::INFINITY] {
         let mut start = start.clone();
         start[3] = bad;
-        let error = solvers_refuse(Problem { start: &start, ..good });
-        assert!(matches!(error, BuildError::InvalidOption { option: "start", .. }));
+        let error = solvers_refuse(Problem {
+            start: &start,
+            ..good
+        });
+        assert!(matches!(
+            error,
+            BuildError::InvalidOption {
+                option: "start",
+                ..
+            }
+        ));
     }
     // no elements: nothing holds the vertices together
     let empty = RestShape {
         stretches: 2,
         ..Default::default()
     };
-    solvers_refuse(Problem { rest: &empty, ..good });
+    solvers_refuse(Problem {
+        rest: &empty,
+        ..good
+    });
     // vertices of no element
     let mut lonely = start.clone();
     lonely.extend([7.0, 7.0]);
-    solvers_refuse(Problem { start: &lonely, ..good });
+    solvers_refuse(Problem {
+        start: &lonely,
+        ..good
+    });
     // rest shapes that are not
     let mut broken = rest.clone();
     broken.inverse.pop();
-    solvers_refuse(Problem { rest: &broken, ..good });
+    solvers_refuse(Problem {
+        rest: &broken,
+        ..good
+    });
     let mut broken = rest.clone();
     broken.measure[1] = f64::NAN;
-    solvers_refuse(Problem { rest: &broken, ..good });
+    solvers_refuse(Problem {
+        rest: &broken,
+        ..good
+    });
 }
 
 #[test]
@@ -388,18 +462,45 @@ fn solver_options_out_of_range() {
     assert!(base.validate().is_ok() && with(weights).validate().is_ok());
     let mut bad = vec![
         WrapdOptions { history: 0, ..base },
-        WrapdOptions { max_global_iterations: 0, ..base },
-        with(Reweighting { least: 11.0, ..weights }),
-        with(Reweighting { cap: 1.0, ..weights }),
+        WrapdOptions {
+            max_global_iterations: 0,
+            ..base
+        },
+        with(Reweighting {
+            least: 11.0,
+            ..weights
+        }),
+        with(Reweighting {
+            cap: 1.0,
+            ..weights
+        }),
     ];
     for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0] {
-        bad.push(WrapdOptions { tolerance: number, ..base });
-        bad.push(with(Reweighting { threshold: number.min(1.0), ..weights }));
-        bad.push(with(Reweighting { least: number, ..weights }));
-        bad.push(with(Reweighting { most: number, ..weights }));
+        bad.push(WrapdOptions {
+            tolerance: number,
+            ..base
+        });
+        bad.push(with(Reweighting {
+            threshold: number.min(1.0),
+            ..weights
+        }));
+        bad.push(with(Reweighting {
+            least: number,
+            ..weights
+        }));
+        bad.push(with(Reweighting {
+            most: number,
+            ..weights
+        }));
         if number != f64::INFINITY {
-            bad.push(with(Reweighting { growth: number, ..weights }));
-            bad.push(with(Reweighting { cap: number, ..weights }));
+            bad.push(with(Reweighting {
+                growth: number,
+                ..weights
+            }));
+            bad.push(with(Reweighting {
+                cap: number,
+                ..weights
+            }));
         }
     }
     let (rest, start) = problem();

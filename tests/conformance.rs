@@ -20,7 +20,9 @@ fn load(name: &str) -> Option<SurfaceMesh> {
         return None;
     };
     let mut bytes = Vec::new();
-    flate2::read::GzDecoder::new(&compressed[..]).read_to_end(&mut bytes).unwrap();
+    flate2::read::GzDecoder::new(&compressed[..])
+        .read_to_end(&mut bytes)
+        .unwrap();
     Some(read(&bytes, Format::Obj).unwrap().mesh)
 }
 
@@ -40,14 +42,27 @@ fn check(name: &str, optimum: f64, percent: usize, millionth: usize) {
         !there && r.iteration <= millionth
     });
     let counts = [1e-2, 1e-6].map(|d| run.reaches((1.0 + d) * optimum));
-    println!("{name}: {counts:?} iterations, energy {}", run.last().energy);
-    assert!(counts[0].is_some_and(|k| k <= percent), "{name}: {counts:?}");
-    assert!(counts[1].is_some_and(|k| k <= millionth), "{name}: {counts:?}");
+    println!(
+        "{name}: {counts:?} iterations, energy {}",
+        run.last().energy
+    );
+    assert!(
+        counts[0].is_some_and(|k| k <= percent),
+        "{name}: {counts:?}"
+    );
+    assert!(
+        counts[1].is_some_and(|k| k <= millionth),
+        "{name}: {counts:?}"
+    );
 
     // the energy is that of the certificate, which is computed from scratch in the input's units
     let last = run.last();
     let certificate = run.parameterization.certificate();
-    assert!((last.energy - optimum).abs() <= 1e-6 * optimum, "{}", last.energy);
+    assert!(
+        (last.energy - optimum).abs() <= 1e-6 * optimum,
+        "{}",
+        last.energy
+    );
     assert!((certificate.symmetric_dirichlet - last.energy).abs() <= 1e-9);
     assert!(last.inverted == 0 && certificate.inverted.is_empty());
     assert!(certificate.degenerate.is_empty());
@@ -86,7 +101,8 @@ fn the_four_curves() {
         let bound = (1.0 + excess) * optimum;
         let run = Run::new(&mesh, &endless(method));
         let below = |r: &foldfree::optim::StepReport| r.inverted == 0 && r.energy <= bound;
-        run.while_true(|r| r.iteration < limit && !below(r)).reaches(bound)
+        run.while_true(|r| r.iteration < limit && !below(r))
+            .reaches(bound)
     };
     let wrapd = reaches(Method::Wrapd, 1e-3, 20).unwrap();
     assert!(reaches(Method::WAdmm, 1e-3, 2 * wrapd).is_none());

@@ -142,7 +142,12 @@ fn check_energy<E: Energy<Plane>>(energy: E) {
         let largest = 0.5 * (a + d) + (0.25 * (a - d) * (a - d) + b * b).sqrt();
         close(energy.effective_stiffness(sigma), largest, largest, 1e-14);
     }
-    close(energy.effective_stiffness([1.0, 1.0]), E::REST_STIFFNESS, 1.0, 0.0);
+    close(
+        energy.effective_stiffness([1.0, 1.0]),
+        E::REST_STIFFNESS,
+        1.0,
+        0.0,
+    );
     close(energy.density([1.0, 1.0]), E::ISOMETRY, 1.0, 0.0);
     assert_eq!(energy.gradient([1.0, 1.0]), [0.0, 0.0]);
 }
@@ -259,7 +264,12 @@ fn check_total<E: Energy<Plane>>(energy: E, rest: &RestShape, x: &[f64], toleran
             x[i] += d;
             total::<Plane, E>(energy, rest, &x).energy
         };
-        close(gradient[i], (at(h) - at(-h)) / (2.0 * h), largest, tolerance);
+        close(
+            gradient[i],
+            (at(h) - at(-h)) / (2.0 * h),
+            largest,
+            tolerance,
+        );
     }
 }
 

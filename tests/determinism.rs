@@ -39,7 +39,10 @@ fn with_threads(
     options: &ParameterizationOptions,
     steps: usize,
 ) -> Vec<u64> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .unwrap();
     pool.install(|| {
         let run = Run::new(mesh, options).steps(steps);
         fingerprint(&run.reports, &run.parameterization)
@@ -58,7 +61,10 @@ fn same_bits(method: Method, start: Start, steps: usize) {
         for threads in [1, 2, 3] {
             let other = with_threads(threads, &mesh, &options, steps);
             let first = one.iter().zip(&other).position(|(a, b)| a != b);
-            assert_eq!(first, None, "{method:?}, {size} triangles, {threads} threads");
+            assert_eq!(
+                first, None,
+                "{method:?}, {size} triangles, {threads} threads"
+            );
             assert_eq!(one.len(), other.len());
         }
     }
@@ -112,10 +118,18 @@ fn to_the_end() {
         ..Default::default()
     };
     let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
         pool.install(|| {
             let mut p = Parameterization::new(&mesh, &options).unwrap();
-            let status = run(p.solver_mut(), &mut |_: &dyn Solver| (), &CancelToken::default()).unwrap();
+            let status = run(
+                p.solver_mut(),
+                &mut |_: &dyn Solver| (),
+                &CancelToken::default(),
+            )
+            .unwrap();
             let report = p.solver().report().clone();
             (status, fingerprint(&[report], &p))
         })

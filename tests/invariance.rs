@@ -51,10 +51,17 @@ fn moved(mesh: &SurfaceMesh) -> SurfaceMesh {
 fn vertices_shuffled(mesh: &SurfaceMesh) -> SurfaceMesh {
     let order = Random(1).permutation(mesh.positions.len());
     let mut place = vec![0u32; order.len()];
-    order.iter().enumerate().for_each(|(new, &old)| place[old] = new as u32);
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(new, &old)| place[old] = new as u32);
     SurfaceMesh {
         positions: order.iter().map(|&v| mesh.positions[v]).collect(),
-        simplices: mesh.simplices.iter().map(|t| t.map(|v| place[v as usize])).collect(),
+        simplices: mesh
+            .simplices
+            .iter()
+            .map(|t| t.map(|v| place[v as usize]))
+            .collect(),
     }
 }
 
@@ -78,24 +85,44 @@ fn faces_shuffled(mesh: &SurfaceMesh) -> SurfaceMesh {
 fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, steps: usize) {
     let a = Run::new(mesh, &endless(method)).steps(steps);
     let b = Run::new(other, &endless(method)).steps(steps);
-    assert_eq!(a.parameterization.start_kind(), b.parameterization.start_kind());
+    assert_eq!(
+        a.parameterization.start_kind(),
+        b.parameterization.start_kind()
+    );
     let mut worst = 0.0f64;
     for (a, b) in a.reports.iter().zip(&b.reports) {
         let k = a.iteration;
         let difference = (a.energy - b.energy).abs() / a.energy;
         if a.energy != b.energy {
             worst = worst.max(difference);
-            assert!(difference <= 1e-11, "{name} {method:?} {k}: {} {}", a.energy, b.energy);
+            assert!(
+                difference <= 1e-11,
+                "{name} {method:?} {k}: {} {}",
+                a.energy,
+                b.energy
+            );
         }
         let decisions = [a, b].map(|r| (r.inverted, r.lbfgs_iterations, r.reweighted));
-        assert_eq!(decisions[0], decisions[1], "{name} {method:?}, iteration {k}");
+        assert_eq!(
+            decisions[0], decisions[1],
+            "{name} {method:?}, iteration {k}"
+        );
     }
     println!("{name} {method:?}: energies differ by at most {worst:e}");
     let [a, b] = [&a, &b].map(|r| r.parameterization.certificate());
     let counts = |c: &foldfree::certificate::Certificate| {
         (
-            [c.elements, c.inverted.len(), c.degenerate.len(), c.overwound.len()],
-            [c.boundary_edges, c.boundary_loops, c.boundary_crossing_count],
+            [
+                c.elements,
+                c.inverted.len(),
+                c.degenerate.len(),
+                c.overwound.len(),
+            ],
+            [
+                c.boundary_edges,
+                c.boundary_loops,
+                c.boundary_crossing_count,
+            ],
             [c.is_disk, c.locally_injective, c.globally_injective],
         )
     };
@@ -106,12 +133,18 @@ fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, 
         (a.largest_sigma, b.largest_sigma),
         (a.worst_anisotropy, b.worst_anisotropy),
     ] {
-        assert!(a == b || (a - b).abs() <= 1e-9 * a.abs(), "{name} {method:?}: {a} and {b}");
+        assert!(
+            a == b || (a - b).abs() <= 1e-9 * a.abs(),
+            "{name} {method:?}: {a} and {b}"
+        );
     }
 }
 
 fn shapes() -> [SurfaceMesh; 2] {
-    [generate(Shape::BumpyCap, 3_000), generate(Shape::Terrain, 2_000)]
+    [
+        generate(Shape::BumpyCap, 3_000),
+        generate(Shape::Terrain, 2_000),
+    ]
 }
 
 #[test]
@@ -142,7 +175,12 @@ fn a_power_of_four_changes_not_one_bit() {
 fn the_place_in_space() {
     for mesh in shapes() {
         compare("moved", Method::Wrapd, &mesh, &moved(&mesh), 30);
-        for method in [Method::RAdmm, Method::AdmmPd, Method::Arap, Method::Harmonic] {
+        for method in [
+            Method::RAdmm,
+            Method::AdmmPd,
+            Method::Arap,
+            Method::Harmonic,
+        ] {
             compare("moved", method, &mesh, &moved(&mesh), 12);
         }
     }
@@ -151,7 +189,13 @@ fn the_place_in_space() {
 #[test]
 fn the_order_of_vertices() {
     for mesh in shapes() {
-        compare("vertices", Method::Wrapd, &mesh, &vertices_shuffled(&mesh), 30);
+        compare(
+            "vertices",
+            Method::Wrapd,
+            &mesh,
+            &vertices_shuffled(&mesh),
+            30,
+        );
         for method in [Method::RAdmm, Method::AdmmPd, Method::Arap, Method::Tutte] {
             compare("vertices", method, &mesh, &vertices_shuffled(&mesh), 12);
         }
@@ -179,7 +223,12 @@ fn a_closed_surface_is_flattened_however_it_is_numbered() {
         run.last().energy
     };
     let first = energy(&mesh);
-    let others = [vertices_shuffled(&mesh), faces_shuffled(&mesh), moved(&mesh), scaled(&mesh, 1e3)];
+    let others = [
+        vertices_shuffled(&mesh),
+        faces_shuffled(&mesh),
+        moved(&mesh),
+        scaled(&mesh, 1e3),
+    ];
     for other in others {
         let other = energy(&other);
         assert!((first - other).abs() < 0.02 * first, "{first} {other}");

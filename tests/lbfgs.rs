@@ -49,7 +49,9 @@ fn two_loops(
     factor.solve_in_place(&mut q, columns);
     for ((s, y), alpha) in pairs.iter().zip(alphas.into_iter().rev()) {
         let beta = product(y, &q) / product(y, s);
-        q.iter_mut().zip(s).for_each(|(q, s)| *q += s * (alpha - beta));
+        q.iter_mut()
+            .zip(s)
+            .for_each(|(q, s)| *q += s * (alpha - beta));
     }
     q
 }
@@ -70,7 +72,8 @@ fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
 #[test]
 fn directions_are_those_of_the_textbook() {
     let mut random = Random(1);
-    for (vertices, columns, window) in [(1, 1, 1), (5, 2, 3), (40, 3, 6), (1500, 2, 6), (9000, 2, 9)]
+    for (vertices, columns, window) in
+        [(1, 1, 1), (5, 2, 3), (40, 3, 6), (1500, 2, 6), (9000, 2, 9)]
     {
         let n = vertices * columns;
         let mut factor = path(vertices);
@@ -149,7 +152,10 @@ fn a_history_finds_the_minimum_that_its_first_guess_misses() {
         dot(&gradient, &gradient).sqrt() / first
     };
     let (short, long) = (residual_after(1, 12), residual_after(6, 12));
-    assert!(long <= 1e-5 && 20.0 * long < short, "{long:e}, with one pair {short:e}");
+    assert!(
+        long <= 1e-5 && 20.0 * long < short,
+        "{long:e}, with one pair {short:e}"
+    );
 }
 
 #[test]
@@ -180,7 +186,11 @@ fn a_step_without_curvature_changes_nothing() {
             let step = of(&mut history, &probe);
             history.push(&step, &probe, &sum(&probe, &change));
             assert_eq!(history.len(), window);
-            assert_eq!(before, of(&mut history, &probe), "an accepted pair was pushed out");
+            assert_eq!(
+                before,
+                of(&mut history, &probe),
+                "an accepted pair was pushed out"
+            );
         }
     }
 }

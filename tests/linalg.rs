@@ -156,7 +156,8 @@ fn assembly_adds_up() {
         let matrix = assembly.matrix();
         let coo = graph.coo(&natural);
         let mut expected = DMatrix::zeros(graph.n, graph.n);
-        coo.triplet_iter().for_each(|(i, j, w)| expected[(i, j)] += w);
+        coo.triplet_iter()
+            .for_each(|(i, j, w)| expected[(i, j)] += w);
         assert!((dense(matrix) - expected).amax() < 1e-13);
         // sorted columns that begin with the diagonal
         for j in 0..graph.n {
@@ -169,8 +170,13 @@ fn assembly_adds_up() {
 
 #[test]
 fn fixed_unknowns_are_left_out() {
-    let list: [(u32, u32, f64); 5] =
-        [(0, 5, 1.0), (5, 5, 2.0), (1, 0, 3.0), (u32::MAX, 1, 4.0), (0, 1, 0.5)];
+    let list: [(u32, u32, f64); 5] = [
+        (0, 5, 1.0),
+        (5, 5, 2.0),
+        (1, 0, 3.0),
+        (u32::MAX, 1, 4.0),
+        (0, 1, 0.5),
+    ];
     let mut assembly = SymmetricAssembly::new(2, list.iter().map(|e| (e.0, e.1)));
     assembly.fill(|c| list[c].2);
     let expected = DMatrix::from_row_slice(2, 2, &[0.0, 3.5, 3.5, 0.0]);
@@ -319,7 +325,10 @@ fn the_tree_is_split_into_parts_that_know_nothing_of_each_other() {
             assert!(ends.iter().all(|&e| e <= graph.n));
             for (j, &parent) in tree.parent.iter().enumerate() {
                 if parent != NONE {
-                    assert!(place[j] < place[parent as usize], "a child after its parent");
+                    assert!(
+                        place[j] < place[parent as usize],
+                        "a child after its parent"
+                    );
                 }
             }
             // entries of L join columns of one part, or a part and the top

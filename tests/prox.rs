@@ -16,12 +16,17 @@ fn spread(exponents: std::ops::RangeInclusive<i32>) -> Vec<f64> {
     let positive = exponents.flat_map(|e| [1.0, 2.7].map(|m| m * 10f64.powi(e)));
     let positive: Vec<f64> = positive.collect();
     let negative = positive.iter().rev().map(|p| -p);
-    negative.chain([0.0]).chain(positive.iter().copied()).collect()
+    negative
+        .chain([0.0])
+        .chain(positive.iter().copied())
+        .collect()
 }
 
 /// From rest weights of soft energies to beyond the cap of (24b) on stiff ones.
 fn stiffnesses() -> Vec<f64> {
-    (-3..=9).flat_map(|e| [1.0, 3.1].map(|m| m * 10f64.powi(e))).collect()
+    (-3..=9)
+        .flat_map(|e| [1.0, 3.1].map(|m| m * 10f64.powi(e)))
+        .collect()
 }
 
 /// One axis of symmetric Dirichlet: the derivative of z² + z⁻² + k/2 (z − p)² rises from −∞ to ∞ on
@@ -51,7 +56,10 @@ fn the_bisection_is_the_minimum_of_a_dense_search() {
                 let z = 10f64.powf(step as f64 / 200.0);
                 // the value itself is known to this much
                 let noise = 4.0 * f64::EPSILON * (best.abs() + k * p * p);
-                assert!(best <= value(z) + noise, "k {k:e}, p {p:e}: better at {z:e}");
+                assert!(
+                    best <= value(z) + noise,
+                    "k {k:e}, p {p:e}: better at {z:e}"
+                );
             }
         }
     }
@@ -69,7 +77,10 @@ fn symmetric_dirichlet_from_any_warm_start() {
                 // z is the root of a z − b = 2 z⁻³, whose condition number is at most 1 in a and b:
                 // a few roundings are all that can be lost
                 assert!((z - exact).abs() <= 16.0 * ROUNDING * exact, "{context}");
-                assert!((other - exact).abs() <= 16.0 * ROUNDING * exact, "{context}");
+                assert!(
+                    (other - exact).abs() <= 16.0 * ROUNDING * exact,
+                    "{context}"
+                );
                 let terms = [(2.0 + k) * z, -k * p, -2.0 / (z * z * z)];
                 let residual: f64 = terms.iter().sum();
                 let size: f64 = terms.iter().map(|t| t.abs()).sum();
@@ -102,7 +113,10 @@ fn arap_is_the_weighted_mean() {
             // stationary: 2 (z − 1) + k (z − p) = 0, up to the rounding of its terms
             let size = 2.0 + 2.0 * z.abs() + k * (z.abs() + p.abs());
             let residual = 2.0 * (z - 1.0) + k * (z - p);
-            assert!(residual.abs() <= 8.0 * ROUNDING * size, "k {k:e}, p {p:e}: {residual:e}");
+            assert!(
+                residual.abs() <= 8.0 * ROUNDING * size,
+                "k {k:e}, p {p:e}: {residual:e}"
+            );
         }
     }
 }
@@ -226,7 +240,9 @@ fn a_register_gives_the_bits_of_its_elements() {
     // neighbours that need very different numbers of iterations
     let mut random = Random(6);
     let mut row = |decades: f64| -> Vec<f64> {
-        (0..8 * 500).map(|_| 10f64.powf(decades * random.next())).collect()
+        (0..8 * 500)
+            .map(|_| 10f64.powf(decades * random.next()))
+            .collect()
     };
     let (p, k, warm) = (row(3.0), row(4.0), row(4.0));
     let packed = Arch::new().dispatch(SideBySide {

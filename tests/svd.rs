@@ -17,7 +17,11 @@ fn big(x: f64) -> Big {
 
 fn root(x: Big) -> Big {
     // exactly 0 is the only value rounding can take below it
-    if x <= big(0.0) { big(0.0) } else { x.with_precision(BITS).value().nth_root(2) }
+    if x <= big(0.0) {
+        big(0.0)
+    } else {
+        x.with_precision(BITS).value().nth_root(2)
+    }
 }
 
 /// What the decomposition of F is, by ‖F‖² and det F alone: (σ₁ ± σ₂)² = ‖F‖² ± 2 det F.
@@ -52,7 +56,10 @@ fn truth(f: [f64; 4]) -> Truth {
 /// |computed − exact| in units of `scale`.
 fn error(computed: f64, exact: &Big, scale: f64) -> f64 {
     assert!(computed.is_finite());
-    ((big(computed) - exact) / big(scale)).to_f64().value().abs()
+    ((big(computed) - exact) / big(scale))
+        .to_f64()
+        .value()
+        .abs()
 }
 
 /// A few roundings; every bound below is relative to σ₁.
@@ -71,10 +78,18 @@ fn check(f: [f64; 4]) {
     let (sigma, frame) = Plane::svd(f);
     for i in 0..2 {
         let e = error(sigma[i], &exact.sigma[i], scale);
-        assert!(e <= SMALL, "σ{} of {f:?}: {} is off by {e:e}", i + 1, sigma[i]);
+        assert!(
+            e <= SMALL,
+            "σ{} of {f:?}: {} is off by {e:e}",
+            i + 1,
+            sigma[i]
+        );
     }
     for (back, f_k) in Plane::from_svd(sigma, frame).iter().zip(f) {
-        assert!((back - f_k).abs() <= SMALL * scale + TINY, "from_svd of {f:?}: {back}");
+        assert!(
+            (back - f_k).abs() <= SMALL * scale + TINY,
+            "from_svd of {f:?}: {back}"
+        );
     }
 
     let (s, polar) = Plane::polar(f);
@@ -103,10 +118,17 @@ fn check(f: [f64; 4]) {
     let (values, vectors) = Plane::eigen(s);
     for i in 0..2 {
         let e = error(values[i], &exact.sigma[i], scale);
-        assert!(e <= 2.0 * SMALL, "eigenvalue {} of {f:?}: off by {e:e}", i + 1);
+        assert!(
+            e <= 2.0 * SMALL,
+            "eigenvalue {} of {f:?}: off by {e:e}",
+            i + 1
+        );
     }
     for (back, s) in Plane::from_eigen(values, vectors).iter().zip(s) {
-        assert!((back - s).abs() <= SMALL * scale + TINY, "from_eigen of {f:?}: {back}, {s}");
+        assert!(
+            (back - s).abs() <= SMALL * scale + TINY,
+            "from_eigen of {f:?}: {back}, {s}"
+        );
     }
     let norm = &exact.sigma[0] * &exact.sigma[0] + &exact.sigma[1] * &exact.sigma[1];
     let e = error(Plane::symmetric_norm_squared(s), &norm, scale * scale);
@@ -137,7 +159,12 @@ fn difficult() -> Vec<[f64; 4]> {
         let (sin, cos) = (3.0 * r[0]).sin_cos();
         // near the identity, down to the last bit
         for size in [0.0, 1e-16, 2e-16, 1e-15, 1e-12, 1e-8, 1e-4] {
-            list.push([1.0 + size * r[0], size * r[1], size * r[2], 1.0 + size * r[3]]);
+            list.push([
+                1.0 + size * r[0],
+                size * r[1],
+                size * r[2],
+                1.0 + size * r[3],
+            ]);
             // near a rotation, and near a reflection: there σ₁+σ₂ vanishes
             list.push([cos + size * r[0], sin, -sin, cos + size * r[3]]);
             list.push([cos + size * r[0], sin, sin, -cos + size * r[3]]);
@@ -156,7 +183,11 @@ fn difficult() -> Vec<[f64; 4]> {
         list.push([1e5 * cos, 1e5 * sin, -1e-7 * sin, 1e-7 * cos]);
         list.push([1e5 * cos, 1e5 * sin, 1e-7 * sin, -1e-7 * cos]);
     }
-    list.extend([[1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, -1.0], [-1.0, 0.0, 0.0, -1.0]]);
+    list.extend([
+        [1.0, 0.0, 0.0, 1.0],
+        [1.0, 0.0, 0.0, -1.0],
+        [-1.0, 0.0, 0.0, -1.0],
+    ]);
     list.extend([[0.0, 1.0, 1.0, 0.0], [0.0, 1.0, -1.0, 0.0], [0.0; 4]]);
     list
 }
@@ -170,7 +201,11 @@ fn decompositions_are_exact_to_rounding() {
 
 #[test]
 fn tiny_and_huge_ones_too() {
-    for (i, f) in difficult().into_iter().enumerate().filter(|(i, _)| i % 7 == 0) {
+    for (i, f) in difficult()
+        .into_iter()
+        .enumerate()
+        .filter(|(i, _)| i % 7 == 0)
+    {
         let exponents = [-140, -100, -60, -30, -16, -8, 8, 16, 60, 100, 140];
         let size = 10f64.powi(exponents[i / 7 % exponents.len()]);
         check(f.map(|f| f * size));
@@ -191,10 +226,16 @@ fn what_is_too_small_to_square_vanishes() {
             }
             let back = Plane::from_svd([1.0, 1.0], frame);
             let norm: f64 = back.iter().map(|x| x * x).sum();
-            assert!((norm - 2.0).abs() < 1e-10, "the frame of {f:?} is no rotation: {back:?}");
+            assert!(
+                (norm - 2.0).abs() < 1e-10,
+                "the frame of {f:?} is no rotation: {back:?}"
+            );
             let (s, polar) = Plane::polar(f);
             let m = Plane::stretch_residual(f, polar, [0.3, 0.2, -0.1]);
-            assert!(s.iter().chain(&m).all(|x| x.is_finite()), "{f:?}: {s:?} {m:?}");
+            assert!(
+                s.iter().chain(&m).all(|x| x.is_finite()),
+                "{f:?}: {s:?} {m:?}"
+            );
         }
     }
 }
@@ -225,8 +266,23 @@ fn everything<L: Lane>(f: [L; 4]) -> [L; 17] {
     let back = Plane::from_svd([sigma[1], sigma[0]], frame);
     let again = Plane::from_eigen([values[1], values[0]], vectors);
     [
-        sigma[0], sigma[1], s[0], s[1], s[2], m[0], m[1], m[2], m[3], values[0], values[1], back[0],
-        back[1], again[0], again[1], again[2], Plane::symmetric_norm_squared(s),
+        sigma[0],
+        sigma[1],
+        s[0],
+        s[1],
+        s[2],
+        m[0],
+        m[1],
+        m[2],
+        m[3],
+        values[0],
+        values[1],
+        back[0],
+        back[1],
+        again[0],
+        again[1],
+        again[2],
+        Plane::symmetric_norm_squared(s),
     ]
 }
 

@@ -62,6 +62,8 @@ impl Run {
 
     /// The first iterate without inverted triangles whose energy is at most `bound`.
     pub fn reaches(&self, bound: f64) -> Option<usize> {
-        self.reports.iter().position(|r| r.inverted == 0 && r.energy <= bound)
+        self.reports
+            .iter()
+            .position(|r| r.inverted == 0 && r.energy <= bound)
     }
 }
