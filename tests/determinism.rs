@@ -5,7 +5,7 @@ mod flattening;
 
 use flattening::{Run, from};
 use foldfree::mesh::{Shape, SurfaceMesh, generate};
-use foldfree::optim::{CancelToken, StepReport, run};
+use foldfree::optim::{CancelToken, Solver, StepReport, run};
 use foldfree::parameterization::{Method, Parameterization, ParameterizationOptions, Start};
 
 /// What a run leaves: the bits of every position and of every number reported but times.
@@ -50,7 +50,7 @@ fn with_threads(
 }
 
 /// From less than one block of elements to several, none a multiple of a block.
-const SIZES: [usize; 4] = [60, 500, 1_500, 6_000];
+const SIZES: [usize; 4] = [60, 500, 1_700, 5_500];
 
 fn same_bits(method: Method, start: Start, steps: usize) {
     for size in SIZES {
@@ -124,7 +124,12 @@ fn to_the_end() {
             .unwrap();
         pool.install(|| {
             let mut p = Parameterization::new(&mesh, &options).unwrap();
-            let status = run(p.solver_mut(), &mut |_: &_| (), &CancelToken::default()).unwrap();
+            let status = run(
+                p.solver_mut(),
+                &mut |_: &dyn Solver| (),
+                &CancelToken::default(),
+            )
+            .unwrap();
             let report = p.solver().report().clone();
             (status, fingerprint(&[report], &p))
         })

@@ -2,8 +2,8 @@
 //! order of vertices and faces.
 //!
 //! All of these change the last bits of every number, and an iteration passes on what it is given:
-//! energies agree to 1e-9, far above rounding (1e-16, times the condition of the Laplacian) and far
-//! below what any real dependence would show. Counts of inner iterations and reweighting are decisions
+//! energies agree to 1e-11 (measured: 1e-13), above rounding and far below what any real dependence would
+//! show. Counts of inner iterations and reweighting are decisions
 //! and must be the same.
 
 mod flattening;
@@ -96,7 +96,7 @@ fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, 
         if a.energy != b.energy {
             worst = worst.max(difference);
             assert!(
-                difference <= 1e-9,
+                difference <= 1e-11,
                 "{name} {method:?} {k}: {} {}",
                 a.energy,
                 b.energy
@@ -134,7 +134,7 @@ fn compare(name: &str, method: Method, mesh: &SurfaceMesh, other: &SurfaceMesh, 
         (a.worst_anisotropy, b.worst_anisotropy),
     ] {
         assert!(
-            a == b || (a - b).abs() <= 1e-7 * a.abs(),
+            a == b || (a - b).abs() <= 1e-9 * a.abs(),
             "{name} {method:?}: {a} and {b}"
         );
     }

@@ -24,11 +24,14 @@ fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
     let a = two + k;
     let b = k * p;
     let zero = k.lift(0.0);
-    let quarter = (two / a).sqrt().sqrt();
-    // x^⅜ = x^¼ x^⅛: a cube root would be no tighter a bound for its price
-    let pull = (two / (two + (-b).max(zero))).sqrt().sqrt();
-    let pull = pull * pull.sqrt();
-    let floor = k.lift(0.5) * quarter.min(pull);
+    let mut floor = (two / a).sqrt().sqrt();
+    let pulled = b.lt(zero);
+    if b.any(pulled) {
+        // x^⅜ = x^¼ x^⅛; where nothing pulls x is 1, and the minimum what it was
+        let pull = (two / (two + (-b).max(zero))).sqrt().sqrt();
+        floor = floor.min(pull * pull.sqrt());
+    }
+    floor = k.lift(0.5) * floor;
     let mut z = warm.max(floor);
     // the error after a relative step of 1e-8 is of the order of its square
     let tolerance = k.lift(1e-8);

@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use foldfree::mesh::SurfaceMesh;
-use foldfree::optim::StepReport;
+use foldfree::optim::{Status, StepReport};
 use foldfree::parameterization::{Method, Parameterization, ParameterizationOptions, Start};
 
 /// The options of a method that does not stop by itself.
@@ -39,9 +39,9 @@ impl Run {
         }
     }
 
-    /// Steps while `on` holds of the newest report.
+    /// Steps while `on` holds of the newest report (a direct method: once).
     pub fn while_true(mut self, on: impl Fn(&StepReport) -> bool) -> Self {
-        while on(&self.reports[self.reports.len() - 1]) {
+        while self.last().status == Status::Running && on(self.last()) {
             self.reports.push(self.parameterization.step().unwrap());
         }
         self
