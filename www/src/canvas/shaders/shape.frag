@@ -13,8 +13,8 @@ float checker(vec2 p) {
     vec2 w = max(abs(dFdx(p)) + abs(dFdy(p)), vec2(1e-4));
     vec2 i = (abs(fract((p - 0.5 * w) * 0.5) - 0.5) - abs(fract((p + 0.5 * w) * 0.5) - 0.5)) * 2.0 / w;
     float checks = 0.5 - 0.5 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0);
-    // Squares smaller than a pixel or so are an even grey, without moiré.
-    return mix(checks, 0.5, smoothstep(0.6, 1.4, max(w.x, w.y)));
+    // Squares of a few pixels would shimmer: an even grey.
+    return mix(checks, 0.5, smoothstep(0.15, 0.4, max(w.x, w.y)));
 }
 
 void main() {
