@@ -131,8 +131,36 @@ fn a_wheel_that_winds_twice_has_positive_triangles_and_is_no_immersion() {
         .collect();
     let c = agree(&wheel(8, true), &uv, 1.0);
     assert!(c.inverted.is_empty() && c.is_disk);
-    assert_eq!(c.overwound, [0]);
+    assert_eq!((&c.overwound[..], c.overwound_inside), (&[0][..], 1));
+    assert!(c.is_free_of_folds() && c.summary().contains("1 inner vertex wind"));
     assert!(!c.locally_injective && !c.globally_injective);
+}
+
+#[test]
+fn an_open_fan_of_more_than_a_full_turn_laps_over_itself_at_its_vertex() {
+    let fan = |n: usize| {
+        let mut uv = vec![(0, 0)];
+        uv.extend(
+            (0..n)
+                .map(|i| OCTAGON[i % 8])
+                .zip(9..)
+                .map(|(p, r)| (p.0 * r, p.1 * r)),
+        );
+        agree(&wheel(n as u32, false), &uv, 1.0)
+    };
+    assert!(fan(8).globally_injective);
+    // Exactly a full turn: first and last edge lie on each other.
+    let full = fan(9);
+    assert_eq!((&full.overwound[..], full.overwound_inside), (&[0][..], 0));
+    assert_eq!(full.boundary_crossings[0].kind, CrossingKind::Overlap);
+    let more = fan(10);
+    assert_eq!(more.overwound, [0]);
+    assert!(more.is_free_of_folds() && !more.locally_injective);
+    assert!(
+        more.summary().contains("1 boundary vertex wind"),
+        "{}",
+        more.summary()
+    );
 }
 
 /// A spiral strip of n quads, 8 to a turn, at radius r (inner) and r + width.

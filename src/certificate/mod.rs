@@ -26,6 +26,7 @@
 //! triangle is inverted the map is [`Certificate::mirrored`]: it is as injective as its mirror image,
 //! and everything but `inverted` speaks of that mirror image (u negated).
 
+mod corners;
 mod crossings;
 mod distortion;
 mod predicates;
@@ -34,6 +35,7 @@ mod summary;
 mod surface;
 mod winding;
 
+pub use corners::CornerMap;
 pub use crossings::BoundaryCrossing;
 pub use predicates::orientation;
 pub use segments::CrossingKind;
@@ -69,6 +71,9 @@ pub struct Certificate {
     /// Vertices around which the triangles wind more than once; empty while there are inverted or
     /// degenerate triangles.
     pub overwound: Vec<u32>,
+    /// How many of these are inside the surface (branch points); the others are on its boundary, where
+    /// the surface laps over itself beside the vertex.
+    pub overwound_inside: usize,
     /// Edges that do not join two consistently oriented triangles, nor bound one.
     pub irregular_edges: usize,
     /// Edges of the boundary.
@@ -153,6 +158,7 @@ impl Certificate {
         } else {
             Vec::new()
         };
+        let on_boundary = |v: &u32| surface.boundary.binary_search_by_key(v, |e| e[0]);
         let sheets = (regular && boundary_crossing_count == 0)
             .then(|| winding::sheets(&surface.boundary, uv).unsigned_abs() as u32);
         let measures = distortion::measure(rest, uv);
@@ -162,6 +168,7 @@ impl Certificate {
             degenerate,
             mirrored,
             locally_injective: regular && overwound.is_empty(),
+            overwound_inside: overwound.iter().filter(|v| on_boundary(v).is_err()).count(),
             overwound,
             irregular_edges: surface.irregular_edges,
             boundary_edges: surface.boundary.len(),
@@ -177,6 +184,16 @@ impl Certificate {
             worst_anisotropy: measures.worst_anisotropy,
             flat_at_rest: measures.flat_at_rest,
         })
+    }
+}
+
+impl Certificate {
+    /// Is no triangle inverted or degenerate (or every one inverted) and does no edge have two
+    /// triangles on one side? Weaker than `locally_injective`: the triangles around a vertex may
+    /// wind more than once.
+    pub fn is_free_of_folds(&self) -> bool {
+        let inverted = !self.inverted.is_empty() && !self.mirrored;
+        self.elements > 0 && !inverted && self.degenerate.is_empty() && self.irregular_edges == 0
     }
 }
 

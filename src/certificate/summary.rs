@@ -30,6 +30,26 @@ impl Certificate {
         )
     }
 
+    fn windings(&self) -> String {
+        let inside = self.overwound_inside;
+        let beside = self.overwound.len() - inside;
+        let vertices = |n: usize, place: &str| match n {
+            0 => String::new(),
+            1 => format!("1 {place} vertex"),
+            _ => format!("{n} {place} vertices"),
+        };
+        let both = if inside > 0 && beside > 0 {
+            " and "
+        } else {
+            ""
+        };
+        format!(
+            "Nothing folds, but the triangles around {}{both}{} wind more than once.",
+            vertices(inside, "inner"),
+            vertices(beside, "boundary"),
+        )
+    }
+
     fn injectivity(&self) -> String {
         if self.elements == 0 {
             return "There is nothing to map.".into();
@@ -42,14 +62,14 @@ impl Certificate {
                 count(n, "pair of edges"),
             ),
         };
-        let verdict = if self.globally_injective {
+        let verdict: &str = if self.globally_injective {
             "The map is injective (proven exactly)."
         } else if self.sheets.is_some_and(|s| s > 1) {
             "Parts of the map lie on each other."
         } else if self.locally_injective {
             "The map is injective around every point, but not as a whole."
         } else if !self.overwound.is_empty() {
-            "The map winds around a vertex more than once."
+            return format!("{}{crossings}", self.windings());
         } else if self.irregular_edges > 0 {
             "The triangles do not form an oriented surface."
         } else {
@@ -78,13 +98,13 @@ fn number(x: f64) -> String {
         return if x > 0.0 { "infinite" } else { "−infinite" }.into();
     }
     let size = x.abs();
-    if size != 0.0 && !(1e-4..1e7).contains(&size) {
+    if size != 0.0 && !(1e-2..1e7).contains(&size) {
         return format!("{x:.3e}");
     }
     let digits = if size >= 1.0 {
         6 - (size.log10() as usize).min(6)
     } else {
-        7
+        6
     };
     format!("{x:.digits$}")
 }
@@ -98,10 +118,10 @@ mod tests {
         let shown = [1.0128375275, -0.5, 1234567.0, 3.2e9, 0.0, f64::INFINITY].map(number);
         let expected = [
             "1.012838",
-            "-0.5000000",
+            "-0.500000",
             "1234567",
             "3.200e9",
-            "0.0000000",
+            "0.000000",
             "infinite",
         ];
         assert_eq!(shown, expected);

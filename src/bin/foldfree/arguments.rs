@@ -1,0 +1,183 @@
+//! The arguments, as a person types them.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
+use foldfree::mesh::Shape;
+use foldfree::parameterization::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
+use serde::de::DeserializeOwned;
+use std::path::PathBuf;
+
+/// Maps that do not fold: flatten a surface, check a map, make a sample.
+#[derive(Debug, Parser)]
+#[command(name = "foldfree", version, arg_required_else_help = true)]
+pub struct Arguments {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Flatten a triangle mesh.
+    Parameterize(Parameterize),
+    /// Check a map exactly: folds, overlaps, distortion.
+    Check(Check),
+    /// Make a sample mesh.
+    Generate(Generate),
+}
+
+/// Flatten a triangle mesh; exit code 2 when it did not converge.
+#[derive(Debug, Args)]
+pub struct Parameterize {
+    /// Mesh to flatten: .obj or .off, also with .gz behind.
+    #[arg(value_name = "IN")]
+    pub input: PathBuf,
+    /// How.
+    #[arg(long, default_value = "wrapd", value_parser = names::<Method>(METHODS))]
+    pub method: Method,
+    /// Energy of the ADMM methods.
+    #[arg(long, default_value = "symmetric-dirichlet", value_parser = names::<EnergyKind>(ENERGIES))]
+    pub energy: EnergyKind,
+    /// Where the iterative methods start.
+    #[arg(long, default_value = "automatic", value_parser = names::<Start>(STARTS))]
+    pub start: Start,
+    /// Refuse a surface that is not a disk instead of cutting it.
+    #[arg(long)]
+    pub no_cut: bool,
+    /// Stop after this many iterations; 0: the start is the result.
+    #[arg(long, value_name = "N", default_value_t = ParameterizationOptions::default().max_iterations)]
+    pub iterations: usize,
+    /// Stop when the relative change of the energy, or its gradient, is below this.
+    #[arg(long, value_name = "T", default_value_t = ParameterizationOptions::default().tolerance, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Threads; 0: as many as the machine has.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: usize,
+    /// Seed of the random start.
+    #[arg(long, value_name = "S", default_value_t = ParameterizationOptions::default().seed)]
+    pub seed: u32,
+    /// WRAPD without rotation awareness (the paper's W-ADMM).
+    #[arg(long)]
+    pub no_rotation_aware: bool,
+    /// WRAPD without dynamic reweighting (the paper's R-ADMM; with --no-rotation-aware: ADMM-PD).
+    #[arg(long)]
+    pub no_reweighting: bool,
+    /// Write the mesh with its map as texture coordinates: .obj or .obj.gz.
+    #[arg(long, value_name = "OUT.obj")]
+    pub out: Option<PathBuf>,
+    /// Write what happened, iteration by iteration, as JSON.
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Compare with a solution: an .obj of the same triangles with texture coordinates, or flat.
+    #[arg(long, value_name = "SOLUTION.obj")]
+    pub reference: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Check a map exactly; exit code 2 when it folds (a triangle is inverted or degenerate).
+#[derive(Debug, Args)]
+pub struct Check {
+    /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh; also with .gz behind.
+    #[arg(value_name = "MAP")]
+    pub map: PathBuf,
+    /// The surface that is mapped, where it is not in MAP: the same triangles in the same order.
+    #[arg(long, value_name = "R")]
+    pub rest: Option<PathBuf>,
+    /// Exit code 2 also when the map overlaps itself (is not injective as a whole).
+    #[arg(long)]
+    pub global: bool,
+    /// Write the certificate as JSON.
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// Make a sample mesh.
+#[derive(Debug, Args)]
+pub struct Generate {
+    /// Which.
+    #[arg(value_parser = PossibleValuesParser::new(Shape::ALL.map(Shape::name)).map(|n| shape(&n)))]
+    pub shape: Shape,
+    /// Approximate number of triangles.
+    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
+    pub triangles: u32,
+    /// Where to: .obj or .off, also with .gz behind.
+    #[arg(long, value_name = "OUT")]
+    pub out: PathBuf,
+}
+
+const METHODS: &[&str] = &[
+    "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
+];
+const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
+const STARTS: &[&str] = &[
+    "automatic",
+    "harmonic",
+    "tutte",
+    "lscm",
+    "random",
+    "collapsed",
+];
+
+/// A parser for the kebab-case names of an option of the library.
+fn names<T: DeserializeOwned + Clone + Send + Sync + 'static>(
+    known: &'static [&'static str],
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(known)
+        .try_map(|name| serde_json::from_value::<T>(serde_json::Value::String(name)))
+}
+
+fn shape(name: &str) -> Shape {
+    Shape::from_name(name).unwrap_or(Shape::BumpyCap)
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(t) if t.is_finite() && t >= 0.0 => Ok(t),
+        Ok(_) => Err("it must be finite and not negative".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(n) if n <= 1024 => Ok(n),
+        Ok(_) => Err("at most 1024".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+impl Parameterize {
+    /// The library's options.
+    pub fn options(&self) -> Result<ParameterizationOptions, String> {
+        let method = match (self.method, self.no_rotation_aware, self.no_reweighting) {
+            (method, false, false) => method,
+            (Method::Wrapd, true, false) => Method::WAdmm,
+            (Method::Wrapd, false, true) => Method::RAdmm,
+            (Method::Wrapd, true, true) => Method::AdmmPd,
+            _ => {
+                return Err(
+                    "--no-rotation-aware and --no-reweighting go with --method wrapd".into(),
+                );
+            }
+        };
+        Ok(ParameterizationOptions {
+            method,
+            energy: self.energy,
+            start: self.start,
+            cut: if self.no_cut {
+                CutPolicy::Refuse
+            } else {
+                CutPolicy::Cut
+            },
+            tolerance: self.tolerance,
+            max_iterations: self.iterations,
+            seed: self.seed,
+        })
+    }
+}
