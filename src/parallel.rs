@@ -54,3 +54,11 @@ pub(crate) fn join<A: Send, B: Send>(
     }
     (a(), b())
 }
+
+/// Threads of the current pool.
+pub(crate) fn threads() -> usize {
+    #[cfg(feature = "parallel")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "parallel"))]
+    1
+}

@@ -65,6 +65,22 @@ impl RestShape {
         Ok(rest)
     }
 
+    /// The elements in another order: element `order[k]` becomes the k-th.
+    pub fn reordered(&self, order: &[u32]) -> Self {
+        let k = self.stretches;
+        let pick = |width: usize| {
+            order
+                .iter()
+                .flat_map(move |&e| e as usize * width..(e as usize + 1) * width)
+        };
+        Self {
+            stretches: k,
+            vertices: pick(k + 1).map(|i| self.vertices[i]).collect(),
+            inverse: pick(k * k).map(|i| self.inverse[i]).collect(),
+            measure: pick(1).map(|i| self.measure[i]).collect(),
+        }
+    }
+
     /// Number of elements.
     pub fn len(&self) -> usize {
         self.measure.len()

@@ -1,5 +1,6 @@
 //! Assembly of symmetric matrices: the pattern once, the values often.
 
+use crate::parallel;
 use nalgebra_sparse::CscMatrix;
 use nalgebra_sparse::pattern::SparsityPattern;
 
@@ -145,15 +146,18 @@ impl WeightedSum {
     }
 
     /// Sets the values for these element weights.
-    pub fn fill(&mut self, weights: impl Fn(usize) -> f64) {
-        let begin = &self.assembly.begin;
-        for (entry, target) in self.assembly.matrix.values_mut().iter_mut().enumerate() {
-            let range = begin[entry] as usize..begin[entry + 1] as usize;
-            *target = self.coefficient[range]
-                .iter()
-                .fold(0.0, |sum, &(k, element)| {
+    pub fn fill(&mut self, weights: impl Fn(usize) -> f64 + Sync + Send) {
+        const CHUNK: usize = 4096;
+        let (begin, coefficient) = (&self.assembly.begin, &self.coefficient);
+        let values = self.assembly.matrix.values_mut();
+        parallel::for_each_chunk(values, CHUNK, |chunk, values| {
+            for (local, target) in values.iter_mut().enumerate() {
+                let entry = chunk * CHUNK + local;
+                let range = begin[entry] as usize..begin[entry + 1] as usize;
+                *target = coefficient[range].iter().fold(0.0, |sum, &(k, element)| {
                     sum + k * weights(element as usize)
                 });
-        }
+            }
+        });
     }
 }

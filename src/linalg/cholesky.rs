@@ -48,6 +48,8 @@ pub struct Cholesky {
     /// L by columns, diagonal first, without the supernodes' zeros.
     column_begin: Vec<u32>,
     rows: Vec<u32>,
+    /// Where the rows of the common top begin in each column of a part.
+    inner_end: Vec<u32>,
     values: Vec<f64>,
     /// Reciprocal diagonal.
     inverse_diagonal: Vec<f64>,
@@ -143,6 +145,7 @@ impl Cholesky {
             workspace: MemBuffer::new(scratch),
             column_begin: Vec::new(),
             rows: Vec::new(),
+            inner_end: Vec::new(),
             values: Vec::new(),
             inverse_diagonal: vec![0.0; n],
             parts: parts.to_vec(),
@@ -183,6 +186,14 @@ impl Cholesky {
             rows[next[j] as usize] = i as u32;
             next[j] += 1;
         });
+        let bottom = self.parts.last().copied().unwrap_or(0);
+        self.inner_end = (0..n)
+            .map(|j| {
+                let column = &rows[begin[j] as usize..begin[j + 1] as usize];
+                let own = |&r: &u32| j >= bottom || (r as usize) < bottom;
+                begin[j] + column.partition_point(own) as u32
+            })
+            .collect();
         self.values = vec![0.0; rows.len()];
         self.rows = rows;
         self.column_begin = begin;
@@ -260,6 +271,7 @@ impl Cholesky {
             rows: &self.rows,
             values: &self.values,
             inverse_diagonal: &self.inverse_diagonal,
+            inner_end: &self.inner_end,
             parts: &self.parts,
         };
         match columns {

@@ -14,19 +14,24 @@ pub struct ColumnsOfL<'a> {
     pub values: &'a [f64],
     /// 1/L_jj.
     pub inverse_diagonal: &'a [f64],
+    /// In each column, where the rows of the top begin (an index into `rows`).
+    pub inner_end: &'a [u32],
     /// Ends of the parts; the columns after the last are their common top.
     pub parts: &'a [usize],
 }
 
+/// What is done with a part: its columns, its unknowns, its room for the top.
+type EachPart<const D: usize> = dyn Fn(Range<usize>, &mut [[f64; D]], &mut [[f64; D]]) + Sync;
+
 /// Runs each part with its own unknowns and its room for the top, side by side where there are
-/// threads. `split` are the lengths of the parts.
+/// threads.
 fn for_each_part<const D: usize>(
     parts: &[usize],
     mut own: &mut [[f64; D]],
     first: usize,
     mut tops: &mut [[f64; D]],
     top: usize,
-    each: &(dyn Fn(Range<usize>, &mut [[f64; D]], &mut [[f64; D]]) + Sync),
+    each: &EachPart<D>,
 ) {
     match parts {
         [] => {}
@@ -79,11 +84,13 @@ impl ColumnsOfL<'_> {
         });
     }
 
-    /// The rows and values below the diagonal of column j.
+    /// The rows and values below the diagonal of column j, and how many of them come before the top's
+    /// (all, in the top itself).
     #[inline(always)]
-    fn below(&self, j: usize) -> (&[u32], &[f64]) {
+    fn below(&self, j: usize) -> (&[u32], &[f64], usize) {
         let range = self.begin[j] as usize + 1..self.begin[j + 1] as usize;
-        (&self.rows[range.clone()], &self.values[range])
+        let inner = self.inner_end[j] as usize - range.start;
+        (&self.rows[range.clone()], &self.values[range], inner)
     }
 
     /// L y = b for the columns in `range`, whose unknowns are `own`; rows from `bottom` on go to `top`.
@@ -96,12 +103,10 @@ impl ColumnsOfL<'_> {
     ) {
         let first = range.start;
         for j in range {
-            let (rows, values) = self.below(j);
+            let (rows, values, inner) = self.below(j);
             let inverse = self.inverse_diagonal[j];
             let xj = own[j - first].map(|v| v * inverse);
             own[j - first] = xj;
-            // rows ascend, so those of the top are at the end
-            let inner = rows.partition_point(|&r| (r as usize) < bottom);
             for (&row, &l) in rows[..inner].iter().zip(&values[..inner]) {
                 let target = &mut own[row as usize - first];
                 for d in 0..D {
@@ -127,8 +132,7 @@ impl ColumnsOfL<'_> {
     ) {
         let first = range.start;
         for j in range.rev() {
-            let (rows, values) = self.below(j);
-            let inner = rows.partition_point(|&r| (r as usize) < bottom);
+            let (rows, values, inner) = self.below(j);
             let mut sum = own[j - first];
             subtract_products(&mut sum, &rows[..inner], &values[..inner], own, first);
             subtract_products(&mut sum, &rows[inner..], &values[inner..], top, bottom);

@@ -1,10 +1,12 @@
 //! L-BFGS directions with a solve as the initial inverse Hessian.
 //!
 //! The two-loop recursion (Nocedal & Wright, algorithm 7.4) with H₀ = A⁻¹ and no y·s/y·y scaling. The
-//! recursion itself runs on scalars: with the products s_i·y_j at hand, the first loop needs only
-//! s_i·g and the second only y_i·r, so that a direction reads each stored vector twice and writes
-//! none of them.
+//! recursion itself runs on scalars: with all products s_i·y_j at hand, the first loop needs only
+//! s_i·g and the second only y_i·r (r the solution), so that a direction reads each stored vector
+//! twice and writes none. The products of a new pair come for free: s_i·y from s_i·g before and after
+//! the step, s·y_j from the recursion.
 
+use super::vectors::{add_combination, dot, dots, negate};
 use crate::linalg::Cholesky;
 
 /// A history of steps s and gradient changes y.
@@ -13,8 +15,19 @@ pub struct Lbfgs {
     window: usize,
     /// Newest last; at most `window`.
     pairs: Vec<Pair>,
-    /// Vectors of dropped pairs, kept to be used again.
+    /// Vectors of dropped pairs, to be used again.
     spare: Vec<Pair>,
+    /// s_i·g for the gradient of the last direction.
+    along_gradient: Vec<f64>,
+    /// y_i·d for the last direction d.
+    along_direction: Vec<f64>,
+    /// g·d.
+    slope: f64,
+    /// Are `along_gradient` those of the gradient that comes next?
+    fresh: bool,
+    alpha: Vec<f64>,
+    coefficient: Vec<f64>,
+    products: Vec<f64>,
 }
 
 #[derive(Debug, Clone, Default)]
@@ -27,88 +40,30 @@ struct Pair {
     against: Vec<f64>,
 }
 
-/// Entries a block of the vector operations has: small enough for the first-level cache, and the unit
-/// of ordered summation.
-const BLOCK: usize = 1024;
-
-/// a·b, summed in a fixed order: eight running sums a block, blocks in order.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    pulp::Arch::new().dispatch(Dot { a, b })
-}
-
-struct Dot<'a> {
-    a: &'a [f64],
-    b: &'a [f64],
-}
-
-impl pulp::WithSimd for Dot<'_> {
-    type Output = f64;
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> f64 {
-        let mut total = 0.0;
-        for (a, b) in self.a.chunks(BLOCK).zip(self.b.chunks(BLOCK)) {
-            let mut sums = [0.0; 8];
-            let (a, a_rest) = a.as_chunks::<8>();
-            let (b, b_rest) = b.as_chunks::<8>();
-            for (a, b) in a.iter().zip(b) {
-                for lane in 0..8 {
-                    sums[lane] += a[lane] * b[lane];
-                }
-            }
-            for (lane, (a, b)) in a_rest.iter().zip(b_rest).enumerate() {
-                sums[lane] += a * b;
-            }
-            let [s0, s1, s2, s3, s4, s5, s6, s7] = sums;
-            total += ((s0 + s4) + (s2 + s6)) + ((s1 + s5) + (s3 + s7));
-        }
-        total
-    }
-}
-
-/// y += c x.
-struct Axpy<'a> {
-    c: f64,
-    x: &'a [f64],
-    y: &'a mut [f64],
-}
-
-impl pulp::WithSimd for Axpy<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        for (y, x) in self.y.iter_mut().zip(self.x) {
-            *y += self.c * x;
-        }
-    }
-}
-
-fn axpy(c: f64, x: &[f64], y: &mut [f64]) {
-    pulp::Arch::new().dispatch(Axpy { c, x, y });
-}
-
-/// y += Σ cᵢ xᵢ, block by block.
-fn add_combination<'a>(terms: impl Iterator<Item = (f64, &'a [f64])> + Clone, y: &mut [f64]) {
-    for (block, y) in y.chunks_mut(BLOCK).enumerate() {
-        let range = block * BLOCK..block * BLOCK + y.len();
-        for (c, x) in terms.clone() {
-            axpy(c, &x[range.clone()], y);
-        }
-    }
-}
-
 impl Lbfgs {
     /// An empty history of at most `window` pairs.
     pub fn new(window: usize) -> Self {
+        let scalars = || Vec::with_capacity(window + 1);
         Self {
             window,
             pairs: Vec::with_capacity(window),
-            spare: Vec::new(),
+            spare: Vec::with_capacity(window),
+            along_gradient: scalars(),
+            along_direction: scalars(),
+            slope: 0.0,
+            fresh: false,
+            alpha: scalars(),
+            coefficient: scalars(),
+            products: scalars(),
         }
     }
 
     /// Forgets everything (H₀ has changed).
     pub fn clear(&mut self) {
         self.spare.append(&mut self.pairs);
+        self.along_gradient.clear();
+        self.along_direction.clear();
+        self.fresh = false;
     }
 
     /// Number of stored pairs.
@@ -121,8 +76,14 @@ impl Lbfgs {
         self.pairs.is_empty()
     }
 
+    /// The objective has changed, and so will the gradient at the same point.
+    pub fn new_objective(&mut self) {
+        self.fresh = false;
+    }
+
     /// direction = −H g, with H₀ = `factor`⁻¹ applied to each of the `columns` interleaved unknowns
-    /// per row. Returns g·direction.
+    /// per row. Returns g·direction. Unless [`Self::new_objective`] was called, `gradient` must be the
+    /// one handed to the last [`Self::push`].
     pub fn direction(
         &mut self,
         factor: &mut Cholesky,
@@ -131,50 +92,102 @@ impl Lbfgs {
         direction: &mut [f64],
     ) -> f64 {
         let m = self.pairs.len();
-        let mut alpha = vec![0.0; m];
+        if !self.fresh {
+            dots(
+                self.pairs.iter().map(|p| &p.s[..]),
+                gradient,
+                &mut self.along_gradient,
+            );
+        }
+        self.fresh = false;
+        let pairs = &self.pairs;
+        self.alpha.clear();
+        self.alpha.resize(m, 0.0);
         for i in (0..m).rev() {
-            let pair = &self.pairs[i];
-            let newer: f64 = (i + 1..m).map(|j| alpha[j] * pair.against[j]).sum();
-            alpha[i] = pair.rho * (dot(&pair.s, gradient) - newer);
+            let newer: f64 = (i + 1..m)
+                .map(|j| self.alpha[j] * pairs[i].against[j])
+                .sum();
+            self.alpha[i] = pairs[i].rho * (self.along_gradient[i] - newer);
         }
         direction.copy_from_slice(gradient);
         add_combination(
-            self.pairs.iter().zip(&alpha).map(|(p, a)| (-a, &p.y[..])),
+            pairs.iter().zip(&self.alpha).map(|(p, a)| (-a, &p.y[..])),
             direction,
         );
         factor.solve_in_place(direction, columns);
-        let along: Vec<f64> = self.pairs.iter().map(|p| dot(&p.y, direction)).collect();
-        let mut coefficient = vec![0.0; m];
+        dots(
+            pairs.iter().map(|p| &p.y[..]),
+            direction,
+            &mut self.along_direction,
+        );
+        self.coefficient.clear();
         for i in 0..m {
             let older: f64 = (0..i)
-                .map(|j| coefficient[j] * self.pairs[j].against[i])
+                .map(|j| self.coefficient[j] * pairs[j].against[i])
                 .sum();
-            let beta = self.pairs[i].rho * (along[i] + older);
-            coefficient[i] = alpha[i] - beta;
+            let beta = pairs[i].rho * (self.along_direction[i] + older);
+            self.coefficient.push(self.alpha[i] - beta);
         }
         add_combination(
-            self.pairs
+            pairs
                 .iter()
-                .zip(&coefficient)
+                .zip(&self.coefficient)
                 .map(|(p, c)| (*c, &p.s[..])),
             direction,
         );
-        direction.iter_mut().for_each(|d| *d = -*d);
-        dot(gradient, direction)
+        negate(direction);
+        for i in 0..m {
+            let steps: f64 = (0..m)
+                .map(|j| self.coefficient[j] * pairs[j].against[i])
+                .sum();
+            self.along_direction[i] = -(self.along_direction[i] + steps);
+        }
+        self.slope = dot(gradient, direction);
+        self.slope
     }
 
-    /// Remembers a step along the last direction and the gradients before and after it. A pair
-    /// without positive curvature (s·y ≤ 0, up to rounding) is not kept.
+    /// Remembers the last direction as a step that was taken in full, and the gradients of the same
+    /// objective before and after it. A pair without positive curvature (s·y ≤ 0 up to rounding) is
+    /// not kept.
     pub fn push(&mut self, step: &[f64], gradient_before: &[f64], gradient_after: &[f64]) {
-        let mut pair = match self.pairs.len() == self.window {
-            true => {
-                for p in &mut self.pairs[1..] {
-                    p.against.remove(0);
-                }
-                self.pairs.remove(0)
+        // s_i·g after the step, for the old pairs and the new
+        dots(
+            self.pairs
+                .iter()
+                .map(|p| &p.s[..])
+                .chain(core::iter::once(step)),
+            gradient_after,
+            &mut self.products,
+        );
+        let m = self.pairs.len();
+        let curvature = self.products[m] - self.slope;
+        // |s·g| before and after bound the rounding error of their difference
+        let noise = 1e-14 * (self.products[m].abs() + self.slope.abs());
+        if curvature.is_nan() || curvature <= noise {
+            self.products.truncate(m);
+            core::mem::swap(&mut self.along_gradient, &mut self.products);
+            self.fresh = true;
+            return;
+        }
+        for (i, older) in self.pairs.iter_mut().enumerate() {
+            older
+                .against
+                .push(self.products[i] - self.along_gradient[i]);
+        }
+        let mut pair = self.spare.pop().unwrap_or_default();
+        pair.against.clear();
+        pair.against.extend_from_slice(&self.along_direction);
+        pair.against.push(curvature);
+        pair.rho = curvature.recip();
+        if m == self.window {
+            for p in &mut self.pairs[1..] {
+                p.against.remove(0);
             }
-            false => self.spare.pop().unwrap_or_default(),
-        };
+            pair.against.remove(0);
+            self.products.remove(0);
+            let oldest = self.pairs.remove(0);
+            self.spare.push(oldest);
+        }
         pair.s.clear();
         pair.s.extend_from_slice(step);
         pair.y.clear();
@@ -184,20 +197,8 @@ impl Lbfgs {
                 .zip(gradient_before)
                 .map(|(a, b)| a - b),
         );
-        let curvature = dot(&pair.s, &pair.y);
-        let scale = dot(&pair.y, &pair.y).sqrt() * dot(&pair.s, &pair.s).sqrt();
-        if curvature.is_nan() || curvature <= 1e-16 * scale || curvature == 0.0 {
-            self.spare.push(pair);
-            return;
-        }
-        for older in &mut self.pairs {
-            older.against.push(dot(&older.s, &pair.y));
-        }
-        pair.against.clear();
-        pair.against
-            .extend(self.pairs.iter().map(|older| dot(&pair.s, &older.y)));
-        pair.against.push(curvature);
-        pair.rho = curvature.recip();
         self.pairs.push(pair);
+        core::mem::swap(&mut self.along_gradient, &mut self.products);
+        self.fresh = true;
     }
 }

@@ -3,6 +3,7 @@
 mod error;
 pub mod lbfgs;
 mod solver;
+pub mod vectors;
 
 pub use error::{BuildError, SolveError};
 pub use solver::{

@@ -41,6 +41,20 @@ pub struct Block {
     pub f_density: Row,
     /// Largest and smallest singular value of F (rows 0, 1).
     pub stretch: Row,
+    /// What the last pass added up.
+    pub sums: BlockSums,
+}
+
+impl Block {
+    /// Takes over the candidate weights: U is scaled by w²/w_cand² (paper §5.1).
+    pub fn take_candidates(&mut self) {
+        for u in self.u.chunks_exact_mut(BLOCK) {
+            for ((u, old), new) in u.iter_mut().zip(&self.stiffness).zip(&self.candidate) {
+                *u *= old / new;
+            }
+        }
+        self.stiffness.copy_from_slice(&self.candidate);
+    }
 }
 
 /// Sums and extremes over a block's real elements.

@@ -13,6 +13,7 @@ mod block;
 mod coupling;
 mod elimination;
 mod kernels;
+mod layout;
 mod options;
 mod problem;
 mod solver;

@@ -2,12 +2,13 @@
 
 use super::block::{BLOCK, Block, BlockSums};
 use super::kernels::{Kernel, Pass};
+use super::layout::{build_blocks, corner_lists, element_order};
 use super::{Coupling, Elimination, Problem, WrapdOptions};
 use crate::energy::Energy;
 use crate::energy::total::relative_distortion;
-use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, WeightedSum};
-use crate::optim::lbfgs::{Lbfgs, dot};
+use crate::optim::lbfgs::Lbfgs;
+use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
     BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
 };
@@ -33,8 +34,9 @@ pub struct Wrapd<S: Space, C, E> {
     energy: E,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
+    /// The element at each place of the blocks.
+    order: Vec<u32>,
     blocks: Vec<Block>,
-    sums: Vec<BlockSums>,
     forces: Vec<f64>,
     corner_begin: Vec<u32>,
     corners: Vec<u32>,
@@ -71,6 +73,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         problem.validate::<S>()?;
 
         let elimination = Elimination::new(rest, n, problem.pins);
+        // from here on elements are in the order of their vertices' slots
+        let order = element_order(rest, &elimination.slot);
+        let rest = &rest.reordered(&order);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
         matrix.fill(|_| E::REST_STIFFNESS);
         let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
@@ -84,8 +89,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         let corners_per_block = 2 * (rest.stretches + 1) * S::DIM * BLOCK;
         let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
         let mut x = vec![0.0; problem.start.len()];
-        for v in 0..n {
-            let s = slot[v] as usize * S::DIM;
+        for (v, &s) in slot.iter().enumerate() {
+            let s = s as usize * S::DIM;
             x[s..s + S::DIM].copy_from_slice(&problem.start[v * S::DIM..(v + 1) * S::DIM]);
         }
         let unknowns = free * S::DIM;
@@ -93,7 +98,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             options,
             energy,
             slot,
-            sums: vec![BlockSums::default(); blocks.len()],
+            order,
             forces: vec![0.0; corners_per_block * blocks.len()],
             blocks,
             corner_begin,
@@ -126,14 +131,12 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     fn pass(&mut self, pass: Pass) -> BlockSums {
         let chunk = self.forces.len() / self.blocks.len().max(1);
         let (x, energy) = (&self.x, self.energy);
-        let mut work: Vec<(&mut Block, &mut BlockSums)> =
-            self.blocks.iter_mut().zip(&mut self.sums).collect();
         parallel::for_each_block(
-            &mut work,
+            &mut self.blocks,
             &mut self.forces,
             chunk,
-            |_, (block, sums), forces| {
-                **sums = pulp::Arch::new().dispatch(Kernel::<S, C, E> {
+            |_, block, forces| {
+                block.sums = pulp::Arch::new().dispatch(Kernel::<S, C, E> {
                     pass,
                     block,
                     positions: x,
@@ -148,7 +151,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             ratio: 1.0,
             ..Default::default()
         };
-        for s in &self.sums {
+        for s in self.blocks.iter().map(|b| &b.sums) {
             total.lagrangian_change += s.lagrangian_change;
             total.z_energy += s.z_energy;
             total.f_energy += s.f_energy;
@@ -223,6 +226,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     fn global_step(&mut self, lagrangian_change: f64) -> (usize, BlockSums) {
         let bound = S::KAPPA * lagrangian_change.abs();
         self.gather(Forces::Coupling);
+        self.history.new_objective();
         let mut count = 0;
         loop {
             let mut slope = self.history.direction(
@@ -231,7 +235,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 &self.gradient,
                 &mut self.direction,
             );
-            if !(slope < 0.0) {
+            let uphill = !(slope < 0.0);
+            if uphill {
                 self.history.clear();
                 self.direction
                     .iter_mut()
@@ -239,17 +244,21 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                     .for_each(|(d, g)| *d = -g);
                 slope = -dot(&self.gradient, &self.gradient);
             }
-            for (x, d) in self.x.iter_mut().zip(&self.direction) {
-                *x += d;
-            }
+            let unknowns = self.direction.len();
+            add_combination(
+                core::iter::once((1.0, &self.direction[..])),
+                &mut self.x[..unknowns],
+            );
             count += 1;
             let last =
                 C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
             let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
             if !C::LINEAR {
                 self.gather(Forces::NextCoupling);
-                self.history
-                    .push(&self.direction, &self.gradient, &self.next_gradient);
+                if !uphill {
+                    self.history
+                        .push(&self.direction, &self.gradient, &self.next_gradient);
+                }
                 core::mem::swap(&mut self.gradient, &mut self.next_gradient);
             }
             if last {
@@ -260,16 +269,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
     /// Takes over the candidate weights: U is scaled by w²/w_cand², A refactored, the history cleared.
     fn reweight(&mut self, iteration: usize) -> Result<(), SolveError> {
-        for block in &mut self.blocks {
-            let rows = block.u.len() / BLOCK;
-            for e in 0..block.len {
-                let factor = block.stiffness[e] / block.candidate[e];
-                for c in 0..rows {
-                    block.u[c * BLOCK + e] *= factor;
-                }
-            }
-            block.stiffness.copy_from_slice(&block.candidate);
-        }
+        parallel::for_each_chunk(&mut self.blocks, 1, |_, block| block[0].take_candidates());
         let blocks = &self.blocks;
         self.matrix.fill(|e| blocks[e / BLOCK].stiffness[e % BLOCK]);
         self.history.clear();
@@ -377,68 +377,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 }
 
-fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
-    rest: &RestShape,
-    slot: &[u32],
-) -> Vec<Block> {
-    use crate::space::Components;
-    let k = rest.stretches;
-    let local = C::Local::<f64>::LEN;
-    (0..rest.len())
-        .step_by(BLOCK)
-        .map(|begin| {
-            let len = (rest.len() - begin).min(BLOCK);
-            let source = |e: usize| begin + e.min(len - 1);
-            let row = |count: usize| vec![0.0; count * BLOCK];
-            Block {
-                len,
-                vertices: (0..(k + 1) * BLOCK)
-                    .map(|i| slot[rest.simplex(source(i % BLOCK))[i / BLOCK] as usize])
-                    .collect(),
-                inverse: (0..k * k * BLOCK)
-                    .map(|i| rest.inverse[source(i % BLOCK) * k * k + i / BLOCK])
-                    .collect(),
-                measure: (0..BLOCK).map(|e| rest.measure[source(e)]).collect(),
-                stiffness: vec![E::REST_STIFFNESS; BLOCK],
-                candidate: vec![E::REST_STIFFNESS; BLOCK],
-                gradient: row(S::Gradient::<f64>::LEN),
-                z: row(local),
-                u: row(local),
-                sigma: vec![1.0; S::STRETCHES * BLOCK],
-                z_density: row(1),
-                f_density: row(1),
-                stretch: row(2),
-            }
-        })
-        .collect()
-}
-
-/// For each free slot, where in the force array its corners are, by ascending element.
-fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u32>, Vec<u32>) {
-    let corners = rest.stretches + 1;
-    let mut begin = vec![0u32; free + 1];
-    let slots = || {
-        rest.vertices
-            .iter()
-            .map(|&v| slot[v as usize] as usize)
-            .enumerate()
-            .filter(|&(_, s)| s < free)
-    };
-    slots().for_each(|(_, s)| begin[s + 1] += 1);
-    for s in 0..free {
-        begin[s + 1] += begin[s];
-    }
-    let mut next = begin.clone();
-    let mut list = vec![0u32; begin[free] as usize];
-    for (i, s) in slots() {
-        let (e, v) = (i / corners, i % corners);
-        let base = ((2 * (e / BLOCK) * corners + v) * BLOCK + e % BLOCK) * S::DIM;
-        list[next[s] as usize] = base as u32;
-        next[s] += 1;
-    }
-    (begin, list)
-}
-
 impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
     fn step(&mut self) -> Result<StepReport, SolveError> {
         self.iterate()?;
@@ -457,17 +395,16 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
         &self.report
     }
     fn inspect(&self) -> Inspection {
-        let mut inspection = Inspection::default();
-        for block in &self.blocks {
-            for e in 0..block.len {
-                let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
-                inspection
-                    .distortion
-                    .push(relative_distortion(&[largest, smallest]));
-                inspection
-                    .weights
-                    .push((block.stiffness[e] / E::REST_STIFFNESS) as f32);
-            }
+        let elements = self.order.len();
+        let mut inspection = Inspection {
+            distortion: vec![0.0; elements],
+            weights: vec![0.0; elements],
+        };
+        for (place, &element) in self.order.iter().enumerate() {
+            let (block, e) = (&self.blocks[place / BLOCK], place % BLOCK);
+            let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
+            inspection.distortion[element as usize] = relative_distortion(&[largest, smallest]);
+            inspection.weights[element as usize] = (block.stiffness[e] / E::REST_STIFFNESS) as f32;
         }
         inspection
     }

@@ -1,0 +1,82 @@
+//! Where elements and their corners lie in memory.
+
+use super::Coupling;
+use super::block::{BLOCK, Block};
+use crate::energy::Energy;
+use crate::geometry::RestShape;
+use crate::space::{Components, Space};
+
+/// Elements in the order of their lowest slots, so that the positions a block reads and the forces a
+/// vertex gathers are close together.
+pub fn element_order(rest: &RestShape, slot: &[u32]) -> Vec<u32> {
+    let lowest = |e: u32| {
+        let slots = rest.simplex(e as usize).iter().map(|&v| slot[v as usize]);
+        slots.fold(u32::MAX, u32::min)
+    };
+    let mut order: Vec<u32> = (0..rest.len() as u32).collect();
+    order.sort_by_cached_key(|&e| lowest(e));
+    order
+}
+
+/// The elements in blocks, Z and U not set.
+pub fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
+    rest: &RestShape,
+    slot: &[u32],
+) -> Vec<Block> {
+    let k = rest.stretches;
+    let local = C::Local::<f64>::LEN;
+    (0..rest.len())
+        .step_by(BLOCK)
+        .map(|begin| {
+            let len = (rest.len() - begin).min(BLOCK);
+            let source = |e: usize| begin + e.min(len - 1);
+            let row = |count: usize| vec![0.0; count * BLOCK];
+            Block {
+                len,
+                vertices: (0..(k + 1) * BLOCK)
+                    .map(|i| slot[rest.simplex(source(i % BLOCK))[i / BLOCK] as usize])
+                    .collect(),
+                inverse: (0..k * k * BLOCK)
+                    .map(|i| rest.inverse[source(i % BLOCK) * k * k + i / BLOCK])
+                    .collect(),
+                measure: (0..BLOCK).map(|e| rest.measure[source(e)]).collect(),
+                stiffness: vec![E::REST_STIFFNESS; BLOCK],
+                candidate: vec![E::REST_STIFFNESS; BLOCK],
+                gradient: row(S::Gradient::<f64>::LEN),
+                z: row(local),
+                u: row(local),
+                sigma: vec![1.0; S::STRETCHES * BLOCK],
+                z_density: row(1),
+                f_density: row(1),
+                stretch: row(2),
+                sums: Default::default(),
+            }
+        })
+        .collect()
+}
+
+/// For each free slot, where in the force array its corners are, by ascending element.
+pub fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u32>, Vec<u32>) {
+    let corners = rest.stretches + 1;
+    let mut begin = vec![0u32; free + 1];
+    let slots = || {
+        rest.vertices
+            .iter()
+            .map(|&v| slot[v as usize] as usize)
+            .enumerate()
+            .filter(|&(_, s)| s < free)
+    };
+    slots().for_each(|(_, s)| begin[s + 1] += 1);
+    for s in 0..free {
+        begin[s + 1] += begin[s];
+    }
+    let mut next = begin.clone();
+    let mut list = vec![0u32; begin[free] as usize];
+    for (i, s) in slots() {
+        let (e, v) = (i / corners, i % corners);
+        let base = ((2 * (e / BLOCK) * corners + v) * BLOCK + e % BLOCK) * S::DIM;
+        list[next[s] as usize] = base as u32;
+        next[s] += 1;
+    }
+    (begin, list)
+}
