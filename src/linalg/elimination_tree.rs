@@ -14,7 +14,7 @@ pub const NONE: u32 = u32::MAX;
 /// Parents in the elimination tree and the number of entries of each column of L.
 #[derive(Debug, Clone)]
 pub struct EliminationTree {
-    /// Parent of each column, [`NONE`] for roots.
+    /// Parent of each column, `u32::MAX` for roots.
     pub parent: Vec<u32>,
 }
 

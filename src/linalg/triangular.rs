@@ -21,7 +21,8 @@ pub struct ColumnsOfL<'a> {
 }
 
 /// What is done with a part: its columns, its unknowns, its room for the top.
-type EachPart<const D: usize> = dyn Fn(Range<usize>, &mut [[f64; D]], &mut [[f64; D]]) + Sync;
+type EachPart<'a, const D: usize> =
+    dyn Fn(Range<usize>, &mut [[f64; D]], &mut [[f64; D]]) + Sync + 'a;
 
 /// Runs each part with its own unknowns and its room for the top, side by side where there are
 /// threads.

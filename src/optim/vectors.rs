@@ -20,7 +20,7 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Most vectors that [`dots`] takes at once without another round.
 const ROUND: usize = 8;
 
-/// products[i] = vectors[i]·b: eight running sums a block, blocks in order.
+/// The product of each vector with b: eight running sums a block, blocks in order.
 pub fn dots<'a>(
     vectors: impl Iterator<Item = &'a [f64]> + Clone + Sync + Send,
     b: &[f64],

@@ -1,0 +1,30 @@
+// Messages, where the eye is.
+
+const element = (id) => document.getElementById(id);
+let hide;
+
+/** Shows a message until it is dismissed; `plain` ones go by themselves. */
+export function notice(title, text = '', { plain = false } = {}) {
+  clearTimeout(hide);
+  const box = element('notice');
+  element('notice-title').textContent = title;
+  element('notice-text').textContent = text;
+  box.classList.toggle('plain', plain);
+  box.hidden = false;
+  if (plain) hide = setTimeout(clearNotice, 5000);
+}
+
+/** Takes the message away. */
+export function clearNotice() {
+  element('notice').hidden = true;
+}
+
+/** What an error of the library says, with the place it names. */
+export function describe(error) {
+  const text = String(error?.message ?? error);
+  const place = error?.line !== undefined && !/\bline\b/i.test(text) ? `line ${error.line}: ` : '';
+  const sentence = place + text;
+  return sentence.charAt(0).toUpperCase() + sentence.slice(1) + (/[.!?]$/.test(sentence) ? '' : '.');
+}
+
+element('notice-close').addEventListener('click', clearNotice);

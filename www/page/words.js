@@ -1,0 +1,39 @@
+// Numbers and sentences as a person reads them.
+
+/** A number with about `digits` significant digits. */
+export function number(value, digits = 4) {
+  if (value === 0) return '0';
+  if (Number.isNaN(value)) return '–';
+  if (!Number.isFinite(value)) return '∞';
+  const exponent = Math.floor(Math.log10(Math.abs(value)));
+  if (exponent < -3 || exponent > 5) return value.toExponential(Math.min(digits - 1, 2)).replace('e+', 'e');
+  return value.toFixed(Math.max(digits - 1 - exponent, 0));
+}
+
+/** A whole number in groups of three. */
+export function whole(value) {
+  const digits = String(Math.round(value));
+  return digits.length > 4 ? digits.replace(/\B(?=(\d{3})+$)/g, '\u00a0') : digits;
+}
+
+/** "iteration 12, energy 1.043, 0 inverted": what a screen reader hears. */
+export function spoken(record) {
+  return `iteration ${record.iteration}, energy ${number(record.energy)}, ${record.inverted} inverted`;
+}
+
+/** Names of methods, as people write them. */
+export const METHODS = {
+  wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', arap: 'ARAP',
+  lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
+};
+
+/** Why a run ended. */
+export function ending(step) {
+  switch (step.status) {
+    case 'converged': return 'converged';
+    case 'max-iterations': return 'iteration limit reached';
+    case 'stalled': return 'stalled: no step lowers the energy';
+    case 'cancelled': return 'stopped';
+    default: return '';
+  }
+}

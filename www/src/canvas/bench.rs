@@ -1,0 +1,303 @@
+//! The state of the bench: the problem, its runs, what is shown and how.
+
+use glam::Vec2;
+
+use super::gpu::{self, Look, MapData};
+use crate::camera::{Orbit, Pan};
+use crate::colour::{DARK, LIGHT, Theme};
+use crate::distortion::RestShapes;
+use crate::history::{Frames, Record, Run};
+use crate::layout::View;
+use crate::outline;
+
+/// Memory for the iterates of one run.
+const FRAME_BUDGET: usize = 192 << 20;
+
+/// How many times a map may cover itself before its triangles are drawn one for many: what lies
+/// deeper cannot be seen, and painting it would stop a graphics card.
+pub const MOST_LAYERS: usize = 24;
+
+/// Earlier runs kept as curves.
+const MOST_EARLIER_RUNS: usize = 6;
+
+/// A surface on the bench.
+#[derive(Default)]
+pub struct Problem {
+    /// Triangles, three vertices each.
+    pub indices: Vec<u32>,
+    /// Rest shapes of the triangles.
+    pub rest: RestShapes,
+    /// Boundary edges.
+    pub boundary: Vec<[u32; 2]>,
+    /// Vertices.
+    pub vertices: usize,
+}
+
+/// What the plot's height means.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum PlotHeight {
+    /// The values themselves.
+    Values,
+    /// Energy above the lowest any run on this problem has reached, relative.
+    Gap,
+}
+
+/// Something the page must hear of.
+pub enum Event {
+    /// A person chose an iterate on the plot.
+    Show(usize),
+}
+
+/// The whole state; the views draw it, the page's JavaScript changes it.
+pub struct Bench {
+    /// The surface.
+    pub problem: Problem,
+    /// The run on the bench.
+    pub run: Run,
+    /// Its maps.
+    pub frames: Frames,
+    /// Curves of the runs before it on this problem.
+    pub earlier: Vec<Run>,
+    /// Which record is shown.
+    pub shown: usize,
+    /// Which record the map on show belongs to (older than `shown` if that map was dropped).
+    pub shown_map: usize,
+    /// Energy, kebab-case.
+    pub energy: String,
+    /// Lines of the inspector about the problem: name, value.
+    pub facts: Vec<[String; 2]>,
+    /// Colours.
+    pub theme: Theme,
+    /// Size of text; 2 on a projector.
+    pub text: f32,
+    /// Whether nothing may glide.
+    pub reduced_motion: bool,
+    /// The view that is shown alone, if one is.
+    pub alone: Option<View>,
+    /// Whether the inspector is shown.
+    pub inspector: bool,
+    /// Whether all triangle edges are drawn.
+    pub wireframe: bool,
+    /// Whether the surface takes distortion colours.
+    pub tinted: bool,
+    /// Camera of the surface.
+    pub orbit: Orbit,
+    /// Window over the map.
+    pub pan: Pan,
+    /// What the plot's height means.
+    pub plot_height: PlotHeight,
+    /// Whether the plot's width is seconds (else iterations).
+    pub plot_seconds: bool,
+    /// Triangle under the pointer.
+    pub hover: Option<usize>,
+    /// Inverted or collapsed triangles of the map on show.
+    pub inverted: Vec<u32>,
+    /// Every how many triangles one is drawn in the map: 1 unless it covers itself many times.
+    pub thinning: usize,
+    /// Events for the page.
+    pub events: Vec<Event>,
+    stale: bool,
+    scratch: Scratch,
+}
+
+#[derive(Default)]
+struct Scratch {
+    distortions: Vec<f32>,
+    corner_distortions: Vec<f32>,
+    corners: Vec<f32>,
+    outline: Vec<f32>,
+    order: Vec<u32>,
+}
+
+impl Bench {
+    /// An empty bench.
+    pub fn new() -> Self {
+        Self {
+            problem: Problem::default(),
+            run: Run::default(),
+            frames: Frames::new(FRAME_BUDGET),
+            earlier: Vec::new(),
+            shown: 0,
+            shown_map: 0,
+            energy: "symmetric-dirichlet".into(),
+            facts: Vec::new(),
+            theme: LIGHT,
+            text: 1.0,
+            reduced_motion: false,
+            alone: None,
+            inspector: true,
+            wireframe: false,
+            tinted: true,
+            orbit: Orbit::around(&[]),
+            pan: Pan::default(),
+            plot_height: PlotHeight::Values,
+            plot_seconds: false,
+            hover: None,
+            inverted: Vec::new(),
+            thinning: 1,
+            events: Vec::new(),
+            stale: false,
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Puts a surface on the bench and forgets the runs on the last one.
+    pub fn set_problem(&mut self, positions: &[f64], indices: &[u32]) {
+        let same = self.problem.indices == indices && self.problem.vertices == positions.len() / 3;
+        self.problem = Problem {
+            indices: indices.to_vec(),
+            rest: RestShapes::new(positions, indices),
+            boundary: outline::boundary_edges(indices),
+            vertices: positions.len() / 3,
+        };
+        // A camera a person has turned stays when the very same surface comes again.
+        if !same {
+            self.orbit = Orbit::around(positions);
+            self.pan = Pan::default();
+        }
+        let single: Vec<f32> = positions.iter().map(|p| *p as f32).collect();
+        let normals = outline::vertex_normals(positions, indices);
+        let (mut corners, mut corner_normals, mut seam) = (Vec::new(), Vec::new(), Vec::new());
+        outline::per_corner(indices, &single, 3, &mut corners);
+        outline::per_corner(indices, &normals, 3, &mut corner_normals);
+        for v in self.problem.boundary.as_flattened() {
+            seam.extend_from_slice(&single[3 * *v as usize..][..3]);
+        }
+        gpu::with(|gpu| gpu.set_surface(&corners, &corner_normals, &seam));
+        self.earlier.clear();
+        self.run = Run::default();
+        self.frames.clear();
+        self.hover = None;
+        (self.shown, self.shown_map) = (0, 0);
+    }
+
+    /// Begins a run; the one before it stays as a curve if it has one.
+    pub fn begin_run(&mut self, method: &str, start: &str, energy: &str) {
+        let before = std::mem::replace(
+            &mut self.run,
+            Run {
+                method: method.into(),
+                start: start.into(),
+                records: Vec::new(),
+            },
+        );
+        if energy != self.energy {
+            self.earlier.clear();
+            self.energy = energy.into();
+        } else if before.records.len() > 2 {
+            self.earlier
+                .retain(|run| run.method != before.method || run.start != before.start);
+            self.earlier.push(before);
+            let excess = self.earlier.len().saturating_sub(MOST_EARLIER_RUNS);
+            self.earlier.drain(..excess);
+        }
+        // The same solver again replaces its own curve when it ends, not before.
+        self.frames.clear();
+        self.pan.follows = true;
+        (self.shown, self.shown_map) = (0, 0);
+    }
+
+    /// Adds an iterate to the run.
+    pub fn push(&mut self, record: Record, map: Vec<f32>) {
+        if map.len() != 2 * self.problem.vertices {
+            return;
+        }
+        self.frames.push(self.run.records.len(), map);
+        self.run.records.push(record);
+        if self.run.records.len() == 1 {
+            self.show(0);
+        }
+    }
+
+    /// Shows an iterate, the newest if there is none such.
+    pub fn show(&mut self, index: usize) {
+        self.shown = index.min(self.run.records.len().saturating_sub(1));
+        self.stale = true;
+    }
+
+    /// The record of the iterate on show.
+    pub fn record(&self) -> Option<&Record> {
+        self.run.records.get(self.shown)
+    }
+
+    /// The map on show.
+    pub fn map(&self) -> Option<&[f32]> {
+        self.frames.at(self.shown).map(|(_, map)| map)
+    }
+
+    /// Brings the GPU up to date with the iterate on show.
+    pub fn refresh(&mut self) {
+        if !std::mem::take(&mut self.stale) {
+            return;
+        }
+        let Some((index, map)) = self.frames.at(self.shown) else {
+            return;
+        };
+        self.shown_map = index;
+        let indices = &self.problem.indices;
+        let scratch = &mut self.scratch;
+        self.inverted = self
+            .problem
+            .rest
+            .distortions(indices, map, &mut scratch.distortions);
+        scratch.corner_distortions.clear();
+        scratch
+            .corner_distortions
+            .extend(scratch.distortions.iter().flat_map(|d| [*d; 3]));
+        outline::per_corner(indices, map, 2, &mut scratch.corners);
+        self.thinning = outline::layers(indices, map).div_ceil(MOST_LAYERS).max(1);
+        outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
+        scratch.outline.clear();
+        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.outline);
+        let boundary = scratch.outline.len();
+        let drawn: Vec<u32> = self
+            .inverted
+            .iter()
+            .copied()
+            .step_by(self.thinning)
+            .collect();
+        outline::segments_of_triangles(&drawn, indices, map, &mut scratch.outline);
+        gpu::with(|gpu| {
+            gpu.set_map(&MapData {
+                corners: &scratch.corners,
+                distortions: &scratch.corner_distortions,
+                order: &scratch.order,
+                outline: &scratch.outline,
+                boundary,
+            });
+        });
+    }
+
+    /// The window that would show all of the map on show.
+    pub fn fitting(&self, size: Vec2) -> Pan {
+        self.map()
+            .map_or_else(Pan::default, |map| Pan::fitting(map, size))
+    }
+
+    /// How the views are drawn.
+    pub fn look(&self, pixel: f32) -> Look {
+        Look {
+            theme: self.theme,
+            pixel,
+            wireframe: self.wireframe,
+            hover: self.hover,
+            tint: if self.tinted { 0.62 } else { 0.0 },
+        }
+    }
+
+    /// Follows the page's theme.
+    pub fn set_dark(&mut self, dark: bool) {
+        self.theme = if dark { DARK } else { LIGHT };
+    }
+
+    /// The lowest energy any run on this problem has reached without inversions.
+    pub fn lowest_energy(&self) -> Option<f64> {
+        self.earlier
+            .iter()
+            .chain([&self.run])
+            .flat_map(|run| &run.records)
+            .filter(|r| r.inverted == 0 && r.energy.is_finite())
+            .map(|r| r.energy)
+            .min_by(f64::total_cmp)
+    }
+}

@@ -1,0 +1,257 @@
+//! The map in 2D: distortion colours, what is inverted, and the legend.
+
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
+use glam::{Mat4, Vec2, Vec3};
+
+use super::bench::{Bench, MOST_LAYERS};
+use super::{gpu, style};
+use crate::colour::{self, DISTORTION_END, VERMILION};
+use crate::distortion::{corners_of, triangle_at};
+use crate::scale::{number, whole};
+
+/// Inverted triangles that get a ring when too small to see, at most.
+const MOST_RINGS: usize = 80;
+
+/// Draws the view and answers the pointer; returns the triangle under it.
+pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
+    let size = Vec2::new(rect.width(), rect.height());
+    let response = ui.interact(rect, ui.scope_id().with("map"), Sense::click_and_drag());
+    let from_screen = |p: Pos2| Vec2::new(p.x - rect.center().x, rect.center().y - p.y);
+    if response.dragged() {
+        let d = response.drag_delta();
+        bench.pan.drag(Vec2::new(d.x, -d.y), size);
+    }
+    if response.double_clicked() {
+        bench.pan.follows = true;
+    }
+    if let Some(p) = response.hover_pos() {
+        let (zoom, scroll) = ui.input(|i| (i.zoom_delta(), i.smooth_scroll_delta.y));
+        let factor = zoom * (scroll * 0.004).exp();
+        if factor != 1.0 {
+            bench.pan.magnify(factor, from_screen(p), size);
+        }
+    }
+    let rate = if bench.reduced_motion || bench.shown == 0 {
+        1.0
+    } else {
+        0.35
+    };
+    if bench.pan.follow(bench.fitting(size), rate) {
+        ui.ctx().request_repaint();
+    }
+
+    let scale = bench.pan.scale(size);
+    let half = 0.5 * size;
+    let matrix = Mat4::from_scale(Vec3::new(scale / half.x, scale / half.y, 1.0))
+        * Mat4::from_translation(-bench.pan.centre.extend(0.0));
+    let look = bench.look(ui.pixels_per_point());
+    ui.painter().add(egui::PaintCallback {
+        rect,
+        callback: std::sync::Arc::new(eframe::egui_glow::CallbackFn::new(move |_, _| {
+            gpu::with(|gpu| gpu.draw_map(matrix, look));
+        })),
+    });
+
+    rings(ui.painter(), rect, bench, size);
+    let found = response
+        .hover_pos()
+        .filter(|_| !response.dragged())
+        .and_then(|p| pick(bench, bench.pan.to_map(from_screen(p), size)));
+    if let Some(text) = found.and_then(|t| describe(bench, t)) {
+        response.on_hover_text_at_pointer(text);
+    }
+    legend(ui.painter(), rect, bench);
+    let away = if bench.pan.follows {
+        String::new()
+    } else {
+        "double-click to fit".into()
+    };
+    let dropped = if bench.thinning > 1 && bench.pan.follows {
+        format!(
+            "1 in {} triangles drawn: it covers itself {}-fold",
+            bench.thinning,
+            MOST_LAYERS * bench.thinning
+        )
+    } else if bench.shown_map == bench.shown {
+        away
+    } else {
+        format!(
+            "map of iteration {} (older ones are thinned out)",
+            bench.shown_map
+        )
+    };
+    style::heading(ui.painter(), bench, rect, "Map", &dropped);
+    found
+}
+
+fn pick(bench: &Bench, p: Vec2) -> Option<usize> {
+    triangle_at(&bench.problem.indices, bench.map()?, p.to_array())
+}
+
+fn describe(bench: &Bench, t: usize) -> Option<String> {
+    let triangle = bench.problem.indices.as_chunks::<3>().0.get(t)?;
+    let stretch = bench
+        .problem
+        .rest
+        .stretch(t, corners_of(triangle, bench.map()?));
+    let state = if stretch.smallest > 0.0 {
+        ""
+    } else {
+        "\ninverted"
+    };
+    Some(format!(
+        "triangle {}\nσ₁ {}   σ₂ {} (relative){state}",
+        whole(t),
+        number(stretch.largest, 4),
+        number(stretch.smallest, 4)
+    ))
+}
+
+/// Rings around inverted triangles too small to be seen.
+fn rings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
+    let Some(map) = bench.map() else { return };
+    if bench.inverted.is_empty() || bench.inverted.len() > MOST_RINGS {
+        return;
+    }
+    let triangles = bench.problem.indices.as_chunks::<3>().0;
+    for &t in &bench.inverted {
+        let corners = corners_of(&triangles[t as usize], map)
+            .map(|c| bench.pan.to_view(Vec2::from_array(c), size));
+        let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
+        let reach = corners
+            .iter()
+            .map(|c| c.distance(centre))
+            .fold(0.0, f32::max);
+        if reach < 7.0 {
+            let at = rect.center() + vec2(centre.x, -centre.y);
+            painter.circle_stroke(
+                at,
+                8.0,
+                Stroke::new(3.5, style::colour(bench.theme.ground).gamma_multiply(0.8)),
+            );
+            painter.circle_stroke(at, 8.0, Stroke::new(1.6, style::colour(VERMILION)));
+        }
+    }
+}
+
+/// The ramp with its ticks, the mark of clamped values, the hatch of inverted ones.
+fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+    let (theme, text) = (bench.theme, bench.text);
+    let width = (0.36 * rect.width()).clamp(90.0, 190.0 * text);
+    let bar_height = 9.0 * text;
+    let left = rect.left() + 16.0;
+    let bottom = rect.bottom() - 14.0 - 16.0 * text;
+    let bar = Rect::from_min_max(pos2(left, bottom - bar_height), pos2(left + width, bottom));
+    let swatch = Rect::from_min_size(pos2(bar.right(), bar.top()), vec2(16.0 * text, bar_height));
+    let caption = "stretch or squeeze, max(σ₁, 1/σ₂)";
+    let ground = Rect::from_min_max(
+        pos2(rect.left() + 8.0, bar.top() - 22.0 * text),
+        pos2(
+            (swatch.right() + 12.0).max(left + 205.0 * text),
+            rect.bottom() - 8.0,
+        ),
+    );
+    painter.rect_filled(
+        ground,
+        4.0,
+        style::colour(theme.ground).gamma_multiply(0.85),
+    );
+    painter.text(
+        pos2(left, bar.top() - 4.0),
+        Align2::LEFT_BOTTOM,
+        caption,
+        style::regular(style::SMALL * text),
+        style::colour(theme.quiet),
+    );
+    const STEPS: usize = 96;
+    for i in 0..STEPS {
+        let t = (i as f64 + 0.5) / STEPS as f64;
+        let x = |k: usize| bar.left() + bar.width() * k as f32 / STEPS as f32;
+        let cell = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1) + 0.5, bar.bottom()));
+        painter.rect_filled(cell, 0.0, style::colour(colour::cividis(t)));
+    }
+    painter.rect_filled(swatch, 0.0, style::colour(colour::cividis(1.0)));
+    for (i, j) in [(0, 0), (1, 1), (2, 0)] {
+        let dot = swatch.min
+            + vec2(
+                swatch.width() * (i as f32 + 0.5) / 3.0,
+                bar_height * (0.3 + 0.4 * j as f32),
+            );
+        painter.circle_filled(dot, 1.0, Color32::from_rgb(90, 72, 0));
+    }
+    for value in [1.0, 1.5, 2.0, 3.0, DISTORTION_END] {
+        let x = bar.left() + bar.width() * colour::ramp_position(value) as f32;
+        painter.line_segment(
+            [pos2(x, bar.bottom()), pos2(x, bar.bottom() + 3.0)],
+            Stroke::new(1.0, style::colour(theme.quiet)),
+        );
+        let name = if value == DISTORTION_END {
+            "4+".into()
+        } else {
+            format!("{value}")
+        };
+        painter.text(
+            pos2(x, bar.bottom() + 4.0),
+            Align2::CENTER_TOP,
+            name,
+            style::regular(style::SMALL * text),
+            style::colour(theme.quiet),
+        );
+    }
+    inverted_key(painter, rect, bench);
+}
+
+fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+    let (theme, text) = (bench.theme, bench.text);
+    let reported = bench
+        .record()
+        .map_or(bench.inverted.len(), |r| r.inverted as usize);
+    let words = if reported == 0 {
+        "none inverted".to_owned()
+    } else {
+        format!("{} inverted", whole(reported))
+    };
+    let ink = if reported == 0 {
+        theme.quiet
+    } else {
+        theme.warn
+    };
+    let at = pos2(rect.right() - 14.0, rect.top() + 10.0);
+    let galley =
+        painter.layout_no_wrap(words, style::medium(style::BODY * text), style::colour(ink));
+    let place = Align2::RIGHT_TOP.anchor_size(at, galley.size());
+    painter.rect_filled(
+        place.expand2(vec2(26.0 * text, 3.0)).intersect(rect),
+        4.0,
+        style::colour(theme.ground).gamma_multiply(0.8),
+    );
+    let middle = place.center().y;
+    painter.galley(place.min, galley, style::colour(ink));
+    let side = 13.0 * text;
+    let key = Rect::from_center_size(
+        pos2(place.left() - 0.5 * side - 7.0, middle),
+        vec2(side, side),
+    );
+    if reported == 0 {
+        return;
+    }
+    painter.rect_filled(key, 0.0, Color32::from_rgb(255, 230, 209));
+    let clip = painter.with_clip_rect(key);
+    for k in -3..4 {
+        let x = key.center().x + k as f32 * 5.0 * text;
+        clip.add(Shape::line_segment(
+            [
+                pos2(x - side, key.center().y - side),
+                pos2(x + side, key.center().y + side),
+            ],
+            Stroke::new(2.4 * text, style::colour(VERMILION)),
+        ));
+    }
+    let outline = if theme.dark { theme.ink } else { theme.outline };
+    painter.rect_stroke(
+        key,
+        0.0,
+        Stroke::new(1.0, style::colour(outline)),
+        egui::StrokeKind::Inside,
+    );
+}

@@ -1,0 +1,478 @@
+//! Energy, worst distortion and inverted triangles against iteration or time, on a log scale.
+
+use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
+
+use super::bench::{Bench, Event, PlotHeight};
+use super::style;
+use crate::colour::{CurveStyle, VERMILION, curve_style};
+use crate::history::{Record, Run};
+use crate::scale::{LogAxis, linear_ticks, number, power_of_ten};
+use crate::words::{energy_caption, method_name};
+
+/// The least relative gap that is drawn.
+const LEAST_GAP: f64 = 1e-12;
+
+struct Frame {
+    area: Rect,
+    axis: LogAxis,
+    end: f64,
+    seconds: bool,
+    gap: Option<f64>,
+    floor: f32,
+}
+
+impl Frame {
+    fn x(&self, record: &Record) -> f32 {
+        let value = if self.seconds {
+            record.seconds
+        } else {
+            f64::from(record.iteration)
+        };
+        self.area.left() + self.area.width() * (value / self.end).clamp(0.0, 1.0) as f32
+    }
+
+    fn y(&self, value: f64) -> Option<f32> {
+        self.axis
+            .position(value)
+            .map(|t| self.area.bottom() - self.floor - t * (self.area.height() - self.floor))
+    }
+
+    fn energy(&self, record: &Record) -> Option<f64> {
+        let value = match self.gap {
+            None => record.energy,
+            Some(lowest) => ((record.energy - lowest) / lowest.abs().max(1e-300)).max(LEAST_GAP),
+        };
+        value.is_finite().then_some(value)
+    }
+
+    /// A curve of the records, at most one point a pixel (the worst of them), broken where undefined.
+    fn curve(&self, records: &[Record], value: impl Fn(&Record) -> Option<f64>) -> Vec<Vec<Pos2>> {
+        let mut pieces: Vec<Vec<Pos2>> = vec![Vec::new()];
+        for record in records {
+            let point = value(record)
+                .and_then(|v| self.y(v))
+                .map(|y| pos2(self.x(record), y));
+            match (point, pieces.last_mut()) {
+                (Some(p), Some(piece)) => match piece.last_mut() {
+                    Some(last)
+                        if piece_is_dense(records.len(), self.area.width())
+                            && (p.x - last.x).abs() < 0.7 =>
+                    {
+                        last.y = last.y.min(p.y);
+                    }
+                    _ => piece.push(p),
+                },
+                (None, Some(piece)) if !piece.is_empty() => pieces.push(Vec::new()),
+                _ => {}
+            }
+        }
+        pieces
+    }
+}
+
+fn piece_is_dense(count: usize, width: f32) -> bool {
+    count as f32 > 1.2 * width
+}
+
+/// Draws the view and answers the pointer.
+pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
+    let painter = ui.painter().clone();
+    let (theme, text) = (bench.theme, bench.text);
+    let margin = [54.0 * text, 34.0 * text, 112.0 * text, 26.0 * text];
+    let area = Rect::from_min_max(
+        rect.min + vec2(margin[0], margin[1]),
+        rect.max - vec2(margin[2].min(0.3 * rect.width()), margin[3]),
+    );
+    heading(ui, rect, bench);
+    if area.width() < 40.0 || area.height() < 30.0 {
+        return;
+    }
+    let frame = frame(bench, area);
+    axes(&painter, &frame, bench);
+
+    for run in &bench.earlier {
+        let style = curve_style(&run.method);
+        draw(
+            &painter,
+            &frame.curve(&run.records, |r| frame.energy(r)),
+            style,
+            1.2,
+            theme.dark,
+            0.75,
+        );
+        end_label(&painter, &frame, run, bench);
+    }
+    let records = &bench.run.records;
+    let mut ends: Vec<(f32, &str, Color32)> = Vec::new();
+    if frame.gap.is_none() {
+        let quiet = style::colour(theme.quiet);
+        let worst = frame.curve(records, |r| {
+            Some(r.worst_distortion()).filter(|v| v.is_finite())
+        });
+        for piece in &worst {
+            painter.extend(Shape::dashed_line(piece, Stroke::new(1.2, quiet), 5.0, 3.0));
+        }
+        if let Some(p) = worst.iter().rev().find_map(|piece| piece.last()) {
+            ends.push((p.y, "worst distortion", quiet));
+        }
+        inverted(&painter, &frame, records);
+        if let Some(last) = records.last() {
+            let y = frame.y(f64::from(last.inverted)).unwrap_or(area.bottom());
+            ends.push((y, "inverted", style::colour(theme.warn)));
+        }
+    }
+    let own = curve_style(&bench.run.method);
+    let curves = frame.curve(records, |r| frame.energy(r));
+    draw(&painter, &curves, own, 2.0, theme.dark, 1.0);
+    if let Some(p) = curves.iter().rev().find_map(|piece| piece.last()) {
+        let name = if frame.gap.is_some() {
+            method_name(&bench.run.method)
+        } else {
+            "energy"
+        };
+        ends.push((
+            p.y,
+            name,
+            style::colour(if theme.dark { own.dark } else { own.light }),
+        ));
+    }
+    if bench.earlier.is_empty() || frame.gap.is_none() {
+        labels(&painter, area, &mut ends, text);
+    }
+    cursor(ui, rect, &frame, bench);
+}
+
+fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
+    let end = style::heading(ui.painter(), bench, rect, "Convergence", "");
+    let gap = bench.plot_height == PlotHeight::Gap;
+    let vertical = if gap {
+        "(E − lowest) / lowest"
+    } else {
+        energy_caption(&bench.energy)
+    };
+    let horizontal = if bench.plot_seconds {
+        "seconds"
+    } else {
+        "iterations"
+    };
+    let x = toggle(
+        ui,
+        bench,
+        pos2(end.right() + 12.0, end.center().y),
+        vertical,
+        "What the height is: the values, or how far above the lowest energy any run has reached here (E)",
+    );
+    if x.1 {
+        bench.plot_height = if gap {
+            PlotHeight::Values
+        } else {
+            PlotHeight::Gap
+        };
+    }
+    let by = style::label(
+        ui.painter(),
+        bench,
+        pos2(x.0 + 6.0, end.center().y),
+        Align2::LEFT_CENTER,
+        "by",
+        true,
+    );
+    let x = toggle(
+        ui,
+        bench,
+        pos2(by.right() + 6.0, end.center().y),
+        horizontal,
+        "What the width is: iterations, or seconds of solving (X)",
+    );
+    if x.1 {
+        bench.plot_seconds = !bench.plot_seconds;
+    }
+}
+
+/// Text that can be clicked; returns its right end and whether it was.
+fn toggle(ui: &mut egui::Ui, bench: &Bench, at: Pos2, text: &str, hint: &str) -> (f32, bool) {
+    let font = style::regular(style::SMALL * bench.text);
+    let galley =
+        ui.painter()
+            .layout_no_wrap(text.to_owned(), font, style::colour(bench.theme.accent));
+    let rect = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+    let response = ui
+        .interact(rect.expand(4.0), ui.scope_id().with(hint), Sense::click())
+        .on_hover_text(hint);
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(egui::CursorIcon::PointingHand);
+    }
+    let line = Stroke::new(1.0, style::colour(bench.theme.accent).gamma_multiply(0.4));
+    ui.painter()
+        .line_segment([rect.left_bottom(), rect.right_bottom()], line);
+    ui.painter()
+        .galley(rect.min, galley, style::colour(bench.theme.accent));
+    (rect.right(), response.clicked())
+}
+
+fn frame(bench: &Bench, area: Rect) -> Frame {
+    let runs = || bench.earlier.iter().chain([&bench.run]);
+    let last = |value: fn(&Record) -> f64| {
+        runs()
+            .filter_map(|run| run.records.last())
+            .map(value)
+            .fold(0.0, f64::max)
+    };
+    let seconds = bench.plot_seconds;
+    let end = if seconds {
+        last(|r| r.seconds).max(1e-3)
+    } else {
+        last(|r| f64::from(r.iteration)).max(10.0)
+    };
+    let gap = (bench.plot_height == PlotHeight::Gap)
+        .then(|| bench.lowest_energy())
+        .flatten();
+    let mut frame = Frame {
+        area,
+        axis: LogAxis::over([1.0]),
+        end,
+        seconds,
+        gap,
+        floor: 0.0,
+    };
+    let mut values: Vec<f64> = runs()
+        .flat_map(|run| run.records.iter().filter_map(|r| frame.energy(r)))
+        .collect();
+    if gap.is_none() {
+        frame.floor = 13.0 * bench.text;
+        for record in &bench.run.records {
+            values.extend([record.worst_distortion(), f64::from(record.inverted)]);
+        }
+    }
+    frame.axis = LogAxis::over(values);
+    frame
+}
+
+fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
+    let (theme, text) = (bench.theme, bench.text);
+    let font = style::regular(style::SMALL * text);
+    let quiet = style::colour(theme.quiet);
+    let hair = Stroke::new(1.0, style::colour(theme.line));
+    let area = frame.area;
+    let rows = (area.height() / (26.0 * text)).floor().max(2.0) as usize;
+    for value in frame.axis.ticks(rows) {
+        if let Some(y) = frame.y(value) {
+            painter.line_segment([pos2(area.left(), y), pos2(area.right(), y)], hair);
+            painter.text(
+                pos2(area.left() - 8.0, y),
+                Align2::RIGHT_CENTER,
+                power_of_ten(value),
+                font.clone(),
+                quiet,
+            );
+        }
+    }
+    if frame.floor > 0.0 {
+        let y = area.bottom();
+        painter.line_segment([pos2(area.left(), y), pos2(area.right(), y)], hair);
+        painter.text(
+            pos2(area.left() - 8.0, y),
+            Align2::RIGHT_CENTER,
+            "0",
+            font.clone(),
+            quiet,
+        );
+    }
+    for value in linear_ticks(frame.end, (area.width() / (90.0 * text)) as usize) {
+        let x = area.left() + area.width() * (value / frame.end) as f32;
+        painter.line_segment(
+            [pos2(x, area.bottom()), pos2(x, area.bottom() + 4.0)],
+            Stroke::new(1.0, quiet),
+        );
+        let name = if frame.seconds && value > 0.0 {
+            format!("{} s", number(value, 2))
+        } else {
+            format!("{value}")
+        };
+        painter.text(
+            pos2(x, area.bottom() + 6.0),
+            Align2::CENTER_TOP,
+            name,
+            font.clone(),
+            quiet,
+        );
+    }
+}
+
+fn draw(
+    painter: &egui::Painter,
+    pieces: &[Vec<Pos2>],
+    style: CurveStyle,
+    width: f32,
+    dark: bool,
+    opacity: f32,
+) {
+    let ink = style::colour(if dark { style.dark } else { style.light }).gamma_multiply(opacity);
+    let stroke = Stroke::new(width, ink);
+    for piece in pieces {
+        if let [only] = piece.as_slice() {
+            painter.circle_filled(*only, 1.3 * width, ink);
+        } else if style.dash.is_empty() {
+            painter.add(Shape::line(piece.clone(), stroke));
+        } else {
+            let (dashes, gaps): (Vec<f32>, Vec<f32>) = style
+                .dash
+                .as_chunks::<2>()
+                .0
+                .iter()
+                .map(|[d, g]| (*d, *g))
+                .unzip();
+            painter.extend(Shape::dashed_line_with_offset(
+                piece, stroke, &dashes, &gaps, 0.0,
+            ));
+        }
+    }
+}
+
+/// The count of inverted triangles as a stepped line with a dot at every iterate while they are few.
+fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
+    let ink = style::colour(VERMILION);
+    let place = |r: &Record| {
+        pos2(
+            frame.x(r),
+            frame
+                .y(f64::from(r.inverted))
+                .unwrap_or(frame.area.bottom()),
+        )
+    };
+    let mut line: Vec<Pos2> = Vec::new();
+    for record in records {
+        let p = place(record);
+        if let Some(last) = line.last().copied() {
+            if last.y == p.y && line.len() > 1 && line[line.len() - 2].y == p.y {
+                line.pop();
+            } else if last.y != p.y {
+                line.push(pos2(p.x, last.y));
+            }
+        }
+        line.push(p);
+    }
+    painter.add(Shape::line(line, Stroke::new(1.2, ink)));
+    if frame.area.width() / (records.len().max(1) as f32) > 7.0 {
+        for record in records {
+            painter.circle_filled(place(record), 2.4, ink);
+        }
+    }
+}
+
+fn end_label(painter: &egui::Painter, frame: &Frame, run: &Run, bench: &Bench) {
+    let Some(last) = run.records.last() else {
+        return;
+    };
+    let Some(y) = frame.energy(last).and_then(|v| frame.y(v)) else {
+        return;
+    };
+    let ink = curve_style(&run.method);
+    let ink = style::colour(if bench.theme.dark {
+        ink.dark
+    } else {
+        ink.light
+    });
+    let x = frame.x(last);
+    // In the plain plot every curve ends near the same energy: the name goes on the curve's way.
+    if frame.gap.is_some() {
+        painter.text(
+            pos2(x + 6.0, y),
+            Align2::LEFT_CENTER,
+            method_name(&run.method),
+            style::regular(style::SMALL * bench.text),
+            ink,
+        );
+    }
+}
+
+/// Names at the ends of the curves, moved apart until none overlaps.
+fn labels(painter: &egui::Painter, area: Rect, ends: &mut [(f32, &str, Color32)], text: f32) {
+    let height = 14.0 * text;
+    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for i in 1..ends.len() {
+        ends[i].0 = ends[i].0.max(ends[i - 1].0 + height);
+    }
+    let low = area.bottom() + 4.0;
+    for i in (0..ends.len()).rev() {
+        let most = if i + 1 < ends.len() {
+            ends[i + 1].0 - height
+        } else {
+            low
+        };
+        ends[i].0 = ends[i].0.min(most);
+    }
+    for (y, name, ink) in ends.iter() {
+        painter.text(
+            pos2(area.right() + 8.0, *y),
+            Align2::LEFT_CENTER,
+            *name,
+            style::regular(style::SMALL * text),
+            *ink,
+        );
+    }
+}
+
+fn cursor(ui: &mut egui::Ui, rect: Rect, frame: &Frame, bench: &mut Bench) {
+    let body = Rect::from_min_max(pos2(rect.left(), frame.area.top() - 8.0), rect.max);
+    let response = ui.interact(body, ui.scope_id().with("plot"), Sense::click_and_drag());
+    let records = &bench.run.records;
+    let nearest = |p: Pos2| {
+        let after = records.partition_point(|r| frame.x(r) < p.x);
+        let closer = |i: &usize| {
+            records
+                .get(*i)
+                .map_or(f32::MAX, |r| (frame.x(r) - p.x).abs())
+        };
+        [
+            after.saturating_sub(1),
+            after.min(records.len().saturating_sub(1)),
+        ]
+        .into_iter()
+        .min_by(|a, b| closer(a).total_cmp(&closer(b)))
+    };
+    if (response.dragged() || response.clicked())
+        && let Some(index) = response.interact_pointer_pos().and_then(nearest)
+        && index != bench.shown
+    {
+        bench.events.push(Event::Show(index));
+    }
+    let Some(record) = bench.record() else { return };
+    let (theme, x) = (bench.theme, frame.x(record));
+    let painter = ui.painter();
+    let line = Stroke::new(1.2, style::colour(theme.accent));
+    painter.line_segment(
+        [
+            pos2(x, frame.area.top() - 4.0),
+            pos2(x, frame.area.bottom()),
+        ],
+        line,
+    );
+    if let Some(y) = frame.energy(record).and_then(|v| frame.y(v)) {
+        painter.circle_filled(pos2(x, y), 4.0, style::colour(theme.ground));
+        painter.circle_stroke(
+            pos2(x, y),
+            4.0,
+            Stroke::new(2.0, style::colour(theme.accent)),
+        );
+    }
+    if let Some(p) = response.hover_pos()
+        && let Some(r) = nearest(p).and_then(|i| records.get(i))
+    {
+        let x = frame.x(r);
+        let faint = Stroke::new(1.0, style::colour(theme.quiet).gamma_multiply(0.5));
+        painter.line_segment(
+            [pos2(x, frame.area.top()), pos2(x, frame.area.bottom())],
+            faint,
+        );
+        let worst = number(r.worst_distortion(), 4);
+        let text = format!(
+            "iteration {} · {} s\nenergy {}\nworst distortion {worst}\n{} inverted",
+            r.iteration,
+            number(r.seconds, 3),
+            number(r.energy, 6),
+            r.inverted
+        );
+        response.on_hover_text_at_pointer(text);
+    }
+}

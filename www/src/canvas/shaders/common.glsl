@@ -1,0 +1,39 @@
+// Shared by both fragment shaders: what a distortion looks like.
+precision highp float;
+uniform sampler2D u_ramp;
+uniform float u_end;        // ln of the distortion where the ramp ends
+uniform float u_pixel;      // device pixels per point
+uniform float u_wire;       // opacity of the wireframe
+uniform int u_hover;        // triangle under the pointer, or -1
+uniform vec3 u_accent;
+uniform vec3 u_outline;
+uniform vec3 u_vermilion;
+
+vec3 ramp(float distortion) {
+    float t = min(log(max(distortion, 1.0)) / u_end, 1.0);
+    return texture(u_ramp, vec2(t * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+}
+
+// Diagonal stripes, 6 points apart: never only a colour.
+vec3 hatch() {
+    vec2 p = gl_FragCoord.xy / u_pixel;
+    float d = abs(fract((p.x + p.y) / 6.0) - 0.5) * 6.0;
+    return mix(u_vermilion, vec3(1.0, 0.90, 0.82), smoothstep(1.2, 1.9, d));
+}
+
+// Dots where the ramp is clamped.
+vec3 clamped(vec3 colour) {
+    vec2 p = gl_FragCoord.xy / u_pixel / 5.0;
+    p.x += 0.5 * mod(floor(p.y), 2.0);
+    float d = length(fract(p) - 0.5) * 5.0;
+    return mix(vec3(0.35, 0.28, 0.0), colour, smoothstep(0.7, 1.2, d));
+}
+
+vec3 wires(vec3 colour, vec3 edge, float weight) {
+    vec3 width = fwidth(edge);
+    vec3 near = smoothstep(vec3(0.0), width * 1.1 * u_pixel, edge);
+    float line = 1.0 - min(near.x, min(near.y, near.z));
+    // A triangle of a few pixels would be all line: fade.
+    float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
+    return mix(colour, u_outline, line * weight * smoothstep(3.0, 12.0, size));
+}

@@ -1,0 +1,188 @@
+//! Colours: the distortion ramp, the solvers' colours, the two themes.
+
+/// An sRGB colour, 0–255 a channel.
+pub type Rgb = [u8; 3];
+
+/// Distortion at which the ramp ends; larger values are drawn in its last colour and marked.
+pub const DISTORTION_END: f64 = 4.0;
+
+/// Vermilion of inverted triangles (Okabe & Ito 2008), the same in both themes.
+pub const VERMILION: Rgb = [213, 94, 0];
+
+/// The cividis colour map (Nuñez, Anderton & Renslow 2018), `t` in [0, 1], by the polynomial of
+/// d3-scale-chromatic.
+pub fn cividis(t: f64) -> Rgb {
+    let t = t.clamp(0.0, 1.0);
+    let red = -4.54 - t * (35.34 - t * (2381.73 - t * (6402.7 - t * (7024.72 - t * 2710.57))));
+    let green = 32.49 + t * (170.73 + t * (52.82 - t * (131.46 - t * (176.58 - t * 67.37))));
+    let blue = 81.24 + t * (442.36 - t * (2482.43 - t * (6167.24 - t * (6614.94 - t * 2475.67))));
+    [red, green, blue].map(|c| c.round().clamp(0.0, 255.0) as u8)
+}
+
+/// Position on the ramp of a distortion in [1, ∞): logarithmic, 0 at 1 and 1 at [`DISTORTION_END`].
+pub fn ramp_position(distortion: f64) -> f64 {
+    (distortion.max(1.0).ln() / DISTORTION_END.ln()).min(1.0)
+}
+
+/// The ramp as `n` RGBA texels, for the GPU.
+pub fn ramp_texels(n: usize) -> Vec<u8> {
+    let last = n.saturating_sub(1).max(1) as f64;
+    (0..n)
+        .flat_map(|i| {
+            let [r, g, b] = cividis(i as f64 / last);
+            [r, g, b, 255]
+        })
+        .collect()
+}
+
+/// How a solver's curve is drawn, everywhere and always.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CurveStyle {
+    /// Colour on a light ground.
+    pub light: Rgb,
+    /// Colour on a dark ground.
+    pub dark: Rgb,
+    /// Lengths of dash and gap in points; empty for a solid line.
+    pub dash: &'static [f32],
+}
+
+/// The style of a method's curve (kebab-case name as in the options).
+pub fn curve_style(method: &str) -> CurveStyle {
+    let (light, dark, dash): (Rgb, Rgb, &[f32]) = match method {
+        "wrapd" => ([0, 114, 178], [86, 180, 233], &[]),
+        "r-admm" => ([0, 128, 96], [0, 178, 134], &[7.0, 3.0]),
+        "w-admm" => ([170, 110, 0], [230, 159, 0], &[3.0, 3.0]),
+        "admm-pd" => ([110, 114, 120], [160, 165, 172], &[1.5, 3.0]),
+        "arap" => ([164, 76, 130], [204, 121, 167], &[7.0, 3.0, 1.5, 3.0]),
+        _ => ([90, 94, 100], [180, 184, 190], &[]),
+    };
+    CurveStyle { light, dark, dash }
+}
+
+/// The colours of a theme.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Theme {
+    /// Whether the ground is dark.
+    pub dark: bool,
+    /// The ground.
+    pub ground: Rgb,
+    /// Body text.
+    pub ink: Rgb,
+    /// Captions, axes.
+    pub quiet: Rgb,
+    /// Hairlines between regions.
+    pub line: Rgb,
+    /// The one accent.
+    pub accent: Rgb,
+    /// The light square of the checkerboard.
+    pub check_light: Rgb,
+    /// The dark square of the checkerboard.
+    pub check_dark: Rgb,
+    /// Outline of inverted triangles, boundary of the map.
+    pub outline: Rgb,
+    /// Text and marks that warn.
+    pub warn: Rgb,
+}
+
+/// The light theme: ink on paper.
+pub const LIGHT: Theme = Theme {
+    dark: false,
+    ground: [252, 252, 250],
+    ink: [28, 30, 33],
+    quiet: [98, 102, 108],
+    line: [222, 223, 221],
+    accent: [0, 99, 155],
+    check_light: [235, 235, 232],
+    check_dark: [205, 206, 205],
+    outline: [30, 18, 8],
+    warn: [173, 62, 0],
+};
+
+/// The dark theme: for a dim room or a projector.
+pub const DARK: Theme = Theme {
+    dark: true,
+    ground: [19, 21, 24],
+    ink: [230, 231, 232],
+    quiet: [154, 159, 166],
+    line: [46, 49, 54],
+    accent: [102, 187, 238],
+    check_light: [178, 180, 182],
+    check_dark: [146, 149, 152],
+    outline: [10, 6, 3],
+    warn: [255, 140, 66],
+};
+
+/// The contrast ratio of two colours by WCAG 2.
+pub fn contrast(a: Rgb, b: Rgb) -> f64 {
+    let luminance = |c: Rgb| {
+        let [r, g, b] = c.map(|v| {
+            let v = f64::from(v) / 255.0;
+            if v <= 0.04045 {
+                v / 12.92
+            } else {
+                ((v + 0.055) / 1.055).powf(2.4)
+            }
+        });
+        0.2126 * r + 0.7152 * g + 0.0722 * b
+    };
+    let (a, b) = (luminance(a), luminance(b));
+    (a.max(b) + 0.05) / (a.min(b) + 0.05)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cividis_has_its_published_ends() {
+        for (t, expected) in [(0.0, [0, 32, 81]), (1.0, [253, 234, 69])] {
+            for (got, want) in cividis(t).into_iter().zip(expected) {
+                assert!(got.abs_diff(want) <= 1, "cividis({t}) = {:?}", cividis(t));
+            }
+        }
+    }
+
+    #[test]
+    fn the_ramp_grows_lighter() {
+        let grey = |c: Rgb| contrast(c, [0, 0, 0]);
+        assert!(
+            (1..=64).all(
+                |i| grey(cividis(f64::from(i) / 64.0)) > grey(cividis(f64::from(i - 1) / 64.0))
+            )
+        );
+    }
+
+    #[test]
+    fn the_ramp_is_logarithmic_and_clamped() {
+        assert_eq!(ramp_position(1.0), 0.0);
+        assert!((ramp_position(2.0) - 0.5).abs() < 1e-12);
+        assert_eq!(ramp_position(f64::INFINITY), 1.0);
+        assert_eq!(ramp_texels(256).len(), 1024);
+    }
+
+    #[test]
+    fn text_is_readable_on_its_ground() {
+        for theme in [LIGHT, DARK] {
+            for text in [theme.ink, theme.quiet, theme.accent, theme.warn] {
+                assert!(
+                    contrast(text, theme.ground) >= 4.5,
+                    "{text:?} on {:?}",
+                    theme.ground
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn solver_curves_are_visible_and_distinct() {
+        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "arap"];
+        for (i, a) in methods.iter().enumerate() {
+            assert!(contrast(curve_style(a).light, LIGHT.ground) >= 3.0, "{a}");
+            assert!(contrast(curve_style(a).dark, DARK.ground) >= 3.0, "{a}");
+            for b in &methods[..i] {
+                assert_ne!(curve_style(a).light, curve_style(b).light);
+                assert_ne!(curve_style(a).dash, curve_style(b).dash, "{a} {b}");
+            }
+        }
+    }
+}

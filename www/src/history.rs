@@ -1,0 +1,250 @@
+//! What happened: the iterates of the run on the bench and the curves of the runs before it.
+
+/// What an iteration spent its time on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// Which phase.
+    pub kind: PhaseKind,
+    /// How often it was done (for the global step: L-BFGS iterations or linear solves).
+    pub count: u32,
+    /// Time taken, in milliseconds.
+    pub milliseconds: f64,
+}
+
+/// The phases of an iteration, in the order of the `phases` codes of the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PhaseKind {
+    /// Every element on its own.
+    Local,
+    /// The vertices, all together.
+    Global,
+    /// New weights, and a new factorisation.
+    Reweight,
+    /// Energy, inverted elements, termination.
+    Evaluate,
+}
+
+impl PhaseKind {
+    /// From the code the page's JavaScript uses.
+    pub fn from_code(code: f64) -> Self {
+        match code as i64 {
+            0 => Self::Local,
+            1 => Self::Global,
+            2 => Self::Reweight,
+            _ => Self::Evaluate,
+        }
+    }
+}
+
+/// The numbers of one iterate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    /// 0 is the start.
+    pub iteration: u32,
+    /// Energy; an isometry has 1 (symmetric Dirichlet) or 0 (ARAP).
+    pub energy: f64,
+    /// Inverted triangles.
+    pub inverted: u32,
+    /// Length of the gradient.
+    pub gradient_norm: f64,
+    /// Smallest singular value over the triangles.
+    pub smallest_sigma: f64,
+    /// Largest singular value over the triangles.
+    pub largest_sigma: f64,
+    /// L-BFGS iterations of the global step.
+    pub lbfgs_iterations: u32,
+    /// Whether the weights changed after this iteration.
+    pub reweighted: bool,
+    /// Seconds since the solver started, setup apart.
+    pub seconds: f64,
+    /// The phases of the iteration that led here.
+    pub phases: Vec<Phase>,
+}
+
+/// How many numbers the page sends with an iterate, phases apart.
+pub const RECORD_WIDTH: usize = 9;
+
+impl Record {
+    /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields, and three
+    /// (kind, count, milliseconds) for every phase. `None` if the first is too short.
+    pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
+        let &[
+            iteration,
+            energy,
+            inverted,
+            gradient_norm,
+            smallest_sigma,
+            largest_sigma,
+            lbfgs,
+            reweighted,
+            seconds,
+        ] = numbers
+        else {
+            return None;
+        };
+        Some(Self {
+            iteration: iteration as u32,
+            energy,
+            inverted: inverted as u32,
+            gradient_norm,
+            smallest_sigma,
+            largest_sigma,
+            lbfgs_iterations: lbfgs as u32,
+            reweighted: reweighted != 0.0,
+            seconds,
+            phases: phases
+                .as_chunks::<3>()
+                .0
+                .iter()
+                .map(|&[kind, count, milliseconds]| Phase {
+                    kind: PhaseKind::from_code(kind),
+                    count: count as u32,
+                    milliseconds,
+                })
+                .collect(),
+        })
+    }
+
+    /// max(σ₁, 1/σ₂) over the triangles; infinite while one is inverted or collapsed.
+    pub fn worst_distortion(&self) -> f64 {
+        if self.smallest_sigma > 0.0 && self.inverted == 0 {
+            self.largest_sigma.max(1.0 / self.smallest_sigma)
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+/// One run of a solver.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Run {
+    /// Method, kebab-case.
+    pub method: String,
+    /// Where it started, kebab-case.
+    pub start: String,
+    /// Its iterates' numbers.
+    pub records: Vec<Record>,
+}
+
+/// The maps of a run, single precision, within a budget of memory. When it is exceeded every second
+/// map is dropped, the first and the newest kept; the numbers of all stay in [`Run::records`].
+#[derive(Debug, Clone)]
+pub struct Frames {
+    kept: Vec<(usize, Vec<f32>)>,
+    stride: usize,
+    budget: usize,
+}
+
+impl Frames {
+    /// An empty history of at most `budget` bytes.
+    pub fn new(budget: usize) -> Self {
+        Self {
+            kept: Vec::new(),
+            stride: 1,
+            budget,
+        }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        *self = Self::new(self.budget);
+    }
+
+    /// Adds the map of iterate `index`; indices grow.
+    pub fn push(&mut self, index: usize, map: Vec<f32>) {
+        let bytes = size_of::<f32>() * map.len().max(1);
+        // The newest is always kept; it goes when the next one comes, unless it is on the stride.
+        if self.kept.len() > 1 && self.kept.last().is_some_and(|(i, _)| i % self.stride != 0) {
+            self.kept.pop();
+        }
+        if self.kept.len() > 2 && (self.kept.len() + 1) * bytes > self.budget {
+            self.stride *= 2;
+            let stride = self.stride;
+            self.kept.retain(|(i, _)| i % stride == 0);
+        }
+        self.kept.push((index, map));
+    }
+
+    /// The newest kept map at or before iterate `index`, with its own index.
+    pub fn at(&self, index: usize) -> Option<(usize, &[f32])> {
+        let after = self.kept.partition_point(|(i, _)| *i <= index);
+        self.kept
+            .get(after.saturating_sub(1))
+            .map(|(i, map)| (*i, map.as_slice()))
+    }
+
+    /// How many maps are kept.
+    pub fn len(&self) -> usize {
+        self.kept.len()
+    }
+
+    /// Whether none is.
+    pub fn is_empty(&self) -> bool {
+        self.kept.is_empty()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_frame_is_kept_within_the_budget() {
+        let mut frames = Frames::new(4 * 10 * 100);
+        (0..100).for_each(|i| frames.push(i, vec![i as f32; 10]));
+        assert_eq!(frames.len(), 100);
+        assert!((0..100).all(|i| frames.at(i) == Some((i, &[i as f32; 10][..]))));
+    }
+
+    #[test]
+    fn a_full_history_is_thinned_and_keeps_its_ends() {
+        let mut frames = Frames::new(4 * 10 * 16);
+        for i in 0..1000 {
+            frames.push(i, vec![i as f32; 10]);
+            assert!(frames.len() <= 17);
+            assert_eq!(frames.at(i).map(|(k, _)| k), Some(i), "the newest is there");
+            assert_eq!(frames.at(0).map(|(k, _)| k), Some(0), "the start is there");
+        }
+        assert!(frames.len() >= 8);
+        let (k, map) = frames.at(500).unwrap();
+        assert!(k <= 500 && 500 - k < 128 && map[0] == k as f32);
+    }
+
+    #[test]
+    fn an_empty_history_has_nothing() {
+        let mut frames = Frames::new(0);
+        assert!(frames.is_empty() && frames.at(3).is_none());
+        frames.push(0, vec![1.0]);
+        frames.clear();
+        assert!(frames.is_empty());
+    }
+
+    #[test]
+    fn records_come_from_numbers() {
+        let r = Record::from_numbers(
+            &[3.0, 1.5, 0.0, 1e-3, 0.5, 1.25, 2.0, 1.0, 0.25],
+            &[0.0, 1.0, 4.5, 1.0, 2.0, 3.5],
+        )
+        .unwrap();
+        assert_eq!(
+            (r.iteration, r.lbfgs_iterations, r.reweighted),
+            (3, 2, true)
+        );
+        assert_eq!(
+            r.phases[1],
+            Phase {
+                kind: PhaseKind::Global,
+                count: 2,
+                milliseconds: 3.5
+            }
+        );
+        assert_eq!(r.worst_distortion(), 2.0);
+        assert!(Record::from_numbers(&[1.0], &[]).is_none());
+    }
+
+    #[test]
+    fn an_inverted_map_has_no_finite_distortion() {
+        let r = Record::from_numbers(&[0.0, 9.0, 4.0, 0.0, -0.5, 1.0, 0.0, 0.0, 0.0], &[]).unwrap();
+        assert_eq!(r.worst_distortion(), f64::INFINITY);
+    }
+}

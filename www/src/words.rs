@@ -1,0 +1,160 @@
+//! What a step did, in the words and symbols of the papers.
+
+use crate::history::PhaseKind;
+
+/// One line of the inspector.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Explanation {
+    /// Name of the phase.
+    pub name: &'static str,
+    /// What it computes, in the paper's symbols.
+    pub symbol: &'static str,
+    /// Where it is in the paper of the method.
+    pub equation: &'static str,
+    /// What `count` counts, if that is worth a word: singular, plural.
+    pub unit: Option<[&'static str; 2]>,
+    /// One sentence.
+    pub sentence: &'static str,
+}
+
+/// A method's name as people write it.
+pub fn method_name(method: &str) -> &str {
+    match method {
+        "wrapd" => "WRAPD",
+        "r-admm" => "R-ADMM",
+        "w-admm" => "W-ADMM",
+        "admm-pd" => "ADMM-PD",
+        "arap" => "ARAP",
+        "lscm" => "LSCM",
+        "harmonic" => "Harmonic",
+        "tutte" => "Tutte",
+        other => other,
+    }
+}
+
+/// Where a method comes from.
+pub fn citation(method: &str) -> &'static str {
+    match method {
+        "wrapd" | "r-admm" | "w-admm" => "Brown & Narain 2021",
+        "admm-pd" => "Overby et al. 2017",
+        "arap" => "Liu et al. 2008",
+        "lscm" => "Lévy et al. 2002",
+        "harmonic" => "Eck et al. 1995",
+        "tutte" => "Tutte 1963",
+        _ => "",
+    }
+}
+
+/// What a phase of a method's iteration does. Equation numbers are those of the WRAPD paper
+/// (Brown & Narain 2021) unless a name says otherwise.
+pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
+    let rotation_aware = matches!(method, "wrapd" | "r-admm");
+    match (method, kind) {
+        ("arap", PhaseKind::Local) => Explanation {
+            name: "Local",
+            symbol: "Rᵢ ← rotation of Fᵢ",
+            equation: "Liu 2008",
+            unit: None,
+            sentence: "Every triangle on its own finds the rotation nearest to its Jacobian.",
+        },
+        ("arap", PhaseKind::Global) => Explanation {
+            name: "Global",
+            symbol: "A X = B(R)",
+            equation: "Liu 2008",
+            unit: Some(["solve", "solves"]),
+            sentence: "One linear solve with a factor made once puts the vertices where the rotated triangles want them.",
+        },
+        ("lscm" | "harmonic" | "tutte", PhaseKind::Global | PhaseKind::Local) => Explanation {
+            name: "Solve",
+            symbol: "A X = B",
+            equation: "direct",
+            unit: Some(["solve", "solves"]),
+            sentence: "The whole map is the solution of one sparse linear system; there is nothing to iterate.",
+        },
+        (_, PhaseKind::Local) if rotation_aware => Explanation {
+            name: "Local",
+            symbol: "Zᵢ ← prox(sym Fᵢ + Uᵢ)",
+            equation: "(10b), (10c)",
+            unit: None,
+            sentence: "Every triangle on its own trades its energy against staying near its own stretch, by singular values; then the multipliers Uᵢ grow by what is left between them.",
+        },
+        (_, PhaseKind::Local) => Explanation {
+            name: "Local",
+            symbol: "Zᵢ ← prox(Fᵢ + Uᵢ)",
+            equation: "(4b), (4c)",
+            unit: None,
+            sentence: "Every triangle on its own trades its energy against staying near its Jacobian, rotation included; then the multipliers Uᵢ grow by what is left between them.",
+        },
+        (_, PhaseKind::Global) if rotation_aware => Explanation {
+            name: "Global",
+            symbol: "X ← argmin ½Σwᵢ²‖sym Fᵢ − Pᵢ‖²",
+            equation: "(11), stop (17)",
+            unit: Some(["L-BFGS", "L-BFGS"]),
+            sentence: "All vertices move together: L-BFGS started from the factored Laplacian, as long as each of its iterations gains more than the local step did.",
+        },
+        (_, PhaseKind::Global) => Explanation {
+            name: "Global",
+            symbol: "A X = B",
+            equation: "(4a), (5)",
+            unit: Some(["solve", "solves"]),
+            sentence: "All vertices move together: one linear solve with the factored weighted Laplacian.",
+        },
+        (_, PhaseKind::Reweight) => Explanation {
+            name: "Reweight",
+            symbol: "wᵢ² ← clamp(Aᵢ Kₑ(σ))",
+            equation: "(20)–(24)",
+            unit: Some(["factor", "factors"]),
+            sentence: "Some weight was off by more than 1.5: every triangle takes its present stiffness as its weight, and the Laplacian is factored anew.",
+        },
+        (_, PhaseKind::Evaluate) => Explanation {
+            name: "Evaluate",
+            symbol: "E(X), inverted",
+            equation: "(1a)",
+            unit: None,
+            sentence: "Energy, gradient and inverted triangles of the new iterate decide whether to go on.",
+        },
+    }
+}
+
+/// What the energy of the run counts, with the value of an isometry.
+pub fn energy_caption(energy: &str) -> &'static str {
+    if energy == "arap" {
+        "energy (isometry: 0)"
+    } else {
+        "energy (isometry: 1)"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_phase_of_every_method_is_explained() {
+        for method in [
+            "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
+        ] {
+            assert!(!citation(method).is_empty());
+            for kind in [
+                PhaseKind::Local,
+                PhaseKind::Global,
+                PhaseKind::Reweight,
+                PhaseKind::Evaluate,
+            ] {
+                let e = explain(method, kind);
+                assert!(
+                    e.sentence.ends_with('.') && !e.symbol.is_empty() && !e.equation.is_empty()
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn rotation_awareness_changes_the_words() {
+        assert_eq!(
+            explain("wrapd", PhaseKind::Global).equation,
+            "(11), stop (17)"
+        );
+        assert_eq!(explain("w-admm", PhaseKind::Global).equation, "(4a), (5)");
+    }
+}
