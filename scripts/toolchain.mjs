@@ -180,8 +180,8 @@ function wasmFlags(threads) {
   return flags;
 }
 
-/** Arguments every wasm cargo call takes. */
-export const buildStd = ['-Z', 'build-std=std,panic_abort'];
+/** Arguments every wasm cargo call takes: std from its sources, small, and without backtraces. */
+export const buildStd = ['-Z', 'build-std=std,panic_abort', '-Z', 'build-std-features=optimize_for_size'];
 
 /**
  * The environment in which `cargo … --target wasm32-unknown-unknown` and wasm-pack build for wasm:
