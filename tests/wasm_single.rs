@@ -46,18 +46,23 @@ fn exports_what_it_reads_back() {
 
 #[wasm_bindgen_test]
 fn errors_are_typed() {
-    let error = WasmMesh::from_bytes(b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "obj").expect_err("no vertex 9");
+    let error =
+        WasmMesh::from_bytes(b"v 0 0 0\nv 1 0 0\nf 1 2 9\n", "obj").expect_err("no vertex 9");
     assert_eq!(field(&error, "name"), JsValue::from("FoldfreeError"));
     assert_eq!(field(&error, "code"), JsValue::from("parse"));
     assert_eq!(field(&field(&error, "details"), "line"), JsValue::from(3));
 
     let sphere = WasmMesh::generate("sphere", 100).expect("a shape");
     let refuse = options(&[("cut", "refuse".into())]);
-    let error = WasmParameterization::new(&sphere, &refuse).err().expect("a sphere is no disk");
+    let error = WasmParameterization::new(&sphere, &refuse)
+        .err()
+        .expect("a sphere is no disk");
     assert_eq!(field(&error, "code"), JsValue::from("not-a-disk"));
 
     let unknown = Object::new();
     Reflect::set(&unknown, &"iterations".into(), &5.into()).expect("a fresh object");
-    let error = WasmParameterization::new(&sphere, &unknown).err().expect("no such option");
+    let error = WasmParameterization::new(&sphere, &unknown)
+        .err()
+        .expect("no such option");
     assert_eq!(field(&error, "code"), JsValue::from("invalid-option"));
 }

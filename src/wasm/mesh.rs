@@ -24,8 +24,12 @@ impl WasmMesh {
     /// Reads a file's bytes; `format` is `"obj"` or `"off"`.
     #[wasm_bindgen(js_name = fromBytes)]
     pub fn from_bytes(bytes: &[u8], format: &str) -> Fallible<WasmMesh> {
-        let format = Format::from_name(format)
-            .ok_or_else(|| invalid_argument("format", &format!("\"{format}\" is not known; \"obj\" and \"off\" are")))?;
+        let format = Format::from_name(format).ok_or_else(|| {
+            invalid_argument(
+                "format",
+                &format!("\"{format}\" is not known; \"obj\" and \"off\" are"),
+            )
+        })?;
         let file = io::read(bytes, format).map_err(thrown)?;
         Ok(Self {
             mesh: file.mesh,
@@ -40,7 +44,10 @@ impl WasmMesh {
         let positions = positions3(positions)?;
         let (triangles, rest) = indices.as_chunks::<3>();
         if !rest.is_empty() {
-            return Err(invalid_argument("indices", "the length is not a multiple of 3"));
+            return Err(invalid_argument(
+                "indices",
+                "the length is not a multiple of 3",
+            ));
         }
         let vertices = positions.len();
         for (face, triangle) in triangles.iter().enumerate() {
@@ -88,7 +95,9 @@ impl WasmMesh {
     /// Texture coordinates the file came with, k × 2, interleaved.
     #[wasm_bindgen(getter, js_name = textureCoordinates)]
     pub fn texture_coordinates(&self) -> Option<Float64Array> {
-        self.texture.as_ref().map(|texture| flat2(&texture.coordinates))
+        self.texture
+            .as_ref()
+            .map(|texture| flat2(&texture.coordinates))
     }
 
     /// For every corner of every triangle (m × 3) the index of its texture coordinate.
@@ -140,7 +149,10 @@ pub fn shapes() -> Fallible<JsValue> {
 fn positions3(values: &[f64]) -> Fallible<Vec<DVec3>> {
     let (points, rest) = values.as_chunks::<3>();
     if !rest.is_empty() {
-        return Err(invalid_argument("positions", "the length is not a multiple of 3"));
+        return Err(invalid_argument(
+            "positions",
+            "the length is not a multiple of 3",
+        ));
     }
     Ok(points.iter().copied().map(DVec3::from_array).collect())
 }

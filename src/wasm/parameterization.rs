@@ -24,7 +24,8 @@ impl WasmParameterization {
     #[wasm_bindgen(constructor)]
     pub fn new(
         mesh: &WasmMesh,
-        #[wasm_bindgen(unchecked_param_type = "ParameterizationOptions | undefined")] options: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "ParameterizationOptions | undefined")]
+        options: &JsValue,
     ) -> Fallible<WasmParameterization> {
         let options = parameterization_options(options)?;
         let inner = Parameterization::new(mesh.mesh(), &options).map_err(thrown)?;
@@ -52,7 +53,12 @@ impl WasmParameterization {
     /// The map in single precision: half the bytes, enough to draw.
     #[wasm_bindgen(js_name = uvSingle)]
     pub fn uv_single(&self) -> Float32Array {
-        let flat: Vec<f32> = self.inner.uv().iter().flat_map(|uv| uv.as_vec2().to_array()).collect();
+        let flat: Vec<f32> = self
+            .inner
+            .uv()
+            .iter()
+            .flat_map(|uv| uv.as_vec2().to_array())
+            .collect();
         Float32Array::from(flat.as_slice())
     }
 
@@ -125,12 +131,22 @@ impl WasmParameterization {
         for (&vertex, &position) in input.iter().zip(&disk.positions) {
             positions[vertex as usize] = position;
         }
-        let simplices = disk.simplices.iter().map(|face| face.map(|v| input[v as usize])).collect();
+        let simplices = disk
+            .simplices
+            .iter()
+            .map(|face| face.map(|v| input[v as usize]))
+            .collect();
         let texture = CornerTexture {
             coordinates: self.inner.uv(),
             corners: disk.simplices.clone(),
         };
-        io::write_obj(&SurfaceMesh { positions, simplices }, Some(&texture))
+        io::write_obj(
+            &SurfaceMesh {
+                positions,
+                simplices,
+            },
+            Some(&texture),
+        )
     }
 }
 
@@ -140,7 +156,10 @@ pub fn check_map(mesh: &WasmMesh, uv: &[f64]) -> Fallible<JsValue> {
     let (points, rest) = uv.as_chunks::<2>();
     let vertices = mesh.mesh().positions.len();
     if !rest.is_empty() || points.len() != vertices {
-        return Err(invalid_argument("uv", &format!("the length is {}, expected {}", uv.len(), 2 * vertices)));
+        return Err(invalid_argument(
+            "uv",
+            &format!("the length is {}, expected {}", uv.len(), 2 * vertices),
+        ));
     }
     let points: Vec<DVec2> = points.iter().copied().map(DVec2::from_array).collect();
     to_js(&Certificate::try_of_map(mesh.mesh(), &points).map_err(thrown)?)
@@ -153,7 +172,11 @@ pub fn check_corners(mesh: &WasmMesh, corners: &[f64]) -> Fallible<JsValue> {
     let triangles = mesh.mesh().simplices.len();
     let (images, _) = corners.as_chunks::<6>();
     if corners.len() != 6 * triangles {
-        let what = format!("the length is {}, expected {}", corners.len(), 6 * triangles);
+        let what = format!(
+            "the length is {}, expected {}",
+            corners.len(),
+            6 * triangles
+        );
         return Err(invalid_argument("corners", &what));
     }
     let images: Vec<[DVec2; 3]> = images
