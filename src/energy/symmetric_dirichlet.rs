@@ -14,19 +14,20 @@ pub struct SymmetricDirichlet;
 ///
 /// f is increasing and concave on z > 0. From a point left of the root Newton's method climbs to it
 /// monotonically, without overshooting; from a point right of it, it lands left of it. So the only
-/// guard needed is against landing at z ≤ 0, and `floor`, a bound known to be left of the root,
-/// serves: with m = min((2/(2+k))^¼, (2/max(−kp, 0))^⅓) the root is above m/2 where p ≤ 0, and for
-/// p > 0 it is above m alone (f falls when p grows, and f(m) = −kp for p > 0).
+/// guard needed is against landing at z ≤ 0, or so far left that the climb, which where z⁻³ rules is
+/// by a third a step, is long. With a = 2+k, q = max(−kp, 0) and x = 2/(2+q) ≤ 1 that guard is `floor`
+/// = m/2 with m = min((2/a)^¼, x^⅜): there a z ≤ m⁻³ and q ≤ 2 x⁻¹ ≤ 2 m⁻³, but 2 z⁻³ = 16 m⁻³, so it
+/// is left of the root; and since x^⅓ is about the root where q rules, it is not far.
 #[inline(always)]
 fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
     let two = k.lift(2.0);
     let a = two + k;
     let b = k * p;
-    // The floor by halving from the warm start would do, but a closed form costs two square roots:
-    // (2/a)^¼ and, for b < 0, the bound 2/(2+|b|) ≤ (2/|b|)^⅓.
     let zero = k.lift(0.0);
     let quarter = (two / a).sqrt().sqrt();
-    let pull = two / (two + (-b).max(zero));
+    // x^⅜ = x^¼ x^⅛: a cube root would be no tighter a bound for its price
+    let pull = (two / (two + (-b).max(zero))).sqrt().sqrt();
+    let pull = pull * pull.sqrt();
     let floor = k.lift(0.5) * quarter.min(pull);
     let mut z = warm.max(floor);
     // the error after a relative step of 1e-8 is of the order of its square
@@ -42,10 +43,13 @@ fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
         let slope = a + k.lift(6.0) * r3 * r;
         let next = (z - f / slope).max(floor);
         let moving = (tolerance * z).lt((next - z).abs());
-        z = next;
         if !z.any(moving) {
+            z = next;
             break;
         }
+        // elements that have arrived wait for the others with their last step undone, so that they
+        // take the same steps in any company
+        z = z.select(moving, next, z);
     }
     (z, count)
 }

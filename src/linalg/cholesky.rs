@@ -5,7 +5,7 @@
 //! without their padding zeros into plain columns, which is fastest to solve with when, as on
 //! surfaces, supernodes are small.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, supernodal,
@@ -106,9 +106,10 @@ impl Cholesky {
 
     /// Analyses the pattern of `lower` (lower triangle, unknowns in elimination order).
     ///
-    /// # Errors
-    /// `TooLarge` before anything is allocated that a 32-bit memory cannot hold.
     /// `parts` are those of the order (or empty).
+    ///
+    /// # Errors
+    /// `TooLarge` before the factor is allocated, if a 32-bit memory cannot hold it.
     pub fn analyze(lower: &CscMatrix<f64>, parts: &[usize]) -> Result<Self, BuildError> {
         let n = lower.ncols();
         // faer analyses upper triangles: the transpose of ours
@@ -133,11 +134,15 @@ impl Cholesky {
                 limit: MEMORY_LIMIT,
             });
         }
-        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-            blocks_of(&symbolic),
-            Par::Seq,
-            Default::default(),
-        );
+        let scratch = match n {
+            // without unknowns there are no supernodes (and nothing to do)
+            0 => StackReq::EMPTY,
+            _ => supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+                blocks_of(&symbolic),
+                Par::Seq,
+                Default::default(),
+            ),
+        };
         let blocks = vec![0.0; symbolic.len_val()];
         let mut this = Self {
             symbolic,
@@ -204,6 +209,9 @@ impl Cholesky {
     /// # Errors
     /// The first pivot that is not positive; the factor is then unusable until the next success.
     pub fn factorize(&mut self, lower: &CscMatrix<f64>) -> Result<(), NotPositiveDefinite> {
+        if self.dimension() == 0 {
+            return Ok(());
+        }
         let blocks = blocks_of(&self.symbolic);
         let matrix = SparseColMatRef::new(symbolic_of(lower), lower.values());
         supernodal::factorize_supernodal_numeric_llt::<usize, f64>(

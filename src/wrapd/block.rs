@@ -8,39 +8,50 @@ use pulp::Simd;
 /// last element that count for nothing.
 pub const BLOCK: usize = 512;
 
-/// One scalar an element.
-pub type Row = Vec<f64>;
+/// Where the packs of a block begin: all of it, the padding too, so that the bound is a constant.
+#[inline(always)]
+pub fn packs<S: Simd>() -> impl Iterator<Item = usize> {
+    (0..BLOCK / Pack::<S>::WIDTH).map(
+        #[inline(always)]
+        |pack| pack * Pack::<S>::WIDTH,
+    )
+}
 
-/// State of up to [`BLOCK`] elements, component by component (component c of element e is at
-/// c·BLOCK + e).
+/// One scalar an element. Its length is a constant so that loops over a block need no bounds checks.
+pub type Row = [f64; BLOCK];
+
+/// Several scalars an element, component by component.
+pub type Rows = Vec<Row>;
+
+/// State of up to [`BLOCK`] elements: component c of element e is at `[c][e]`.
 #[derive(Debug, Clone)]
 pub struct Block {
     /// Real elements (the rest is padding).
     pub len: usize,
-    /// Vertex slots of each element: row v·BLOCK + e is vertex v of element e.
-    pub vertices: Vec<u32>,
+    /// Vertex slots of each element: vertex v of element e is at `[v][e]`.
+    pub vertices: Vec<[u32; BLOCK]>,
     /// Dm⁻¹, k×k by columns.
-    pub inverse: Row,
+    pub inverse: Rows,
     /// Rest measure A.
-    pub measure: Row,
+    pub measure: Rows,
     /// Current weight over A: k = w²/A of the prox.
-    pub stiffness: Row,
+    pub stiffness: Rows,
     /// Candidate for `stiffness` (22).
-    pub candidate: Row,
+    pub candidate: Rows,
     /// F at the current positions.
-    pub gradient: Row,
+    pub gradient: Rows,
     /// Z.
-    pub z: Row,
+    pub z: Rows,
     /// U, scaled dual.
-    pub u: Row,
+    pub u: Rows,
     /// Singular values of Z: the warm start of the next prox.
-    pub sigma: Row,
+    pub sigma: Rows,
     /// ψ(Z).
-    pub z_density: Row,
+    pub z_density: Rows,
     /// ψ(F), infinite where inverted.
-    pub f_density: Row,
+    pub f_density: Rows,
     /// Largest and smallest singular value of F (rows 0, 1).
-    pub stretch: Row,
+    pub stretch: Rows,
     /// What the last pass added up.
     pub sums: BlockSums,
 }
@@ -48,12 +59,13 @@ pub struct Block {
 impl Block {
     /// Takes over the candidate weights: U is scaled by w²/w_cand² (paper §5.1).
     pub fn take_candidates(&mut self) {
-        for u in self.u.chunks_exact_mut(BLOCK) {
-            for ((u, old), new) in u.iter_mut().zip(&self.stiffness).zip(&self.candidate) {
+        let (old, new) = (&self.stiffness[0], &self.candidate[0]);
+        for u in &mut self.u {
+            for ((u, old), new) in u.iter_mut().zip(old).zip(new) {
                 *u *= old / new;
             }
         }
-        self.stiffness.copy_from_slice(&self.candidate);
+        self.stiffness[0] = self.candidate[0];
     }
 }
 
@@ -80,19 +92,17 @@ pub struct BlockSums {
 
 /// Component-wise load of the elements from `at` on.
 #[inline(always)]
-pub fn load<S: Simd, A: Components<Pack<S>>>(simd: S, rows: &[f64], at: usize) -> A {
+pub fn load<S: Simd, A: Components<Pack<S>>>(simd: S, rows: &[Row], at: usize) -> A {
     A::from_fn(
         #[inline(always)]
-        |c| Pack::load(simd, &rows[c * BLOCK + at..][..Pack::<S>::WIDTH]),
+        |c| Pack::load(simd, &rows[c][at..at + Pack::<S>::WIDTH]),
     )
 }
 
 /// Component-wise store.
 #[inline(always)]
-pub fn store<S: Simd, A: Components<Pack<S>>>(value: A, rows: &mut [f64], at: usize) {
+pub fn store<S: Simd, A: Components<Pack<S>>>(value: A, rows: &mut [Row], at: usize) {
     for c in 0..A::LEN {
-        value
-            .at(c)
-            .store(&mut rows[c * BLOCK + at..][..Pack::<S>::WIDTH]);
+        value.at(c).store(&mut rows[c][at..at + Pack::<S>::WIDTH]);
     }
 }

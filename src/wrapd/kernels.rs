@@ -4,7 +4,7 @@
 //! afterwards, so that no result depends on the number of threads.
 
 use super::Coupling;
-use super::block::{BLOCK, Block, BlockSums, load, store};
+use super::block::{BLOCK, Block, BlockSums, load, packs, store};
 use crate::energy::Energy;
 use crate::space::{Components, Lane, Pack, Scalar, Space};
 use core::marker::PhantomData;
@@ -55,7 +55,7 @@ fn corner<S: Space, V: Simd>(
     v: usize,
 ) -> [Pack<V>; 3] {
     let mut lanes = [[0.0; 8]; 3];
-    let slots = &block.vertices[v * BLOCK + at..][..Pack::<V>::WIDTH];
+    let slots = &block.vertices[v][at..at + Pack::<V>::WIDTH];
     for (lane, &slot) in slots.iter().enumerate() {
         let position = &positions[slot as usize * S::DIM..][..S::DIM];
         for i in 0..S::DIM {
@@ -96,7 +96,7 @@ fn deformation_gradient<S: Space, V: Simd>(
             for (v, edge) in edges.iter().enumerate().take(S::STRETCHES) {
                 let g = Pack::load(
                     simd,
-                    &block.inverse[(column * S::STRETCHES + v) * BLOCK + at..][..Pack::<V>::WIDTH],
+                    &block.inverse[column * S::STRETCHES + v][at..at + Pack::<V>::WIDTH],
                 );
                 let term = edge[i] * g;
                 sum = if v == 0 { term } else { sum + term };
@@ -126,7 +126,7 @@ fn spread<S: Space, V: Simd>(
             for column in 0..S::STRETCHES {
                 let g = Pack::load(
                     simd,
-                    &block.inverse[(column * S::STRETCHES + v) * BLOCK + at..][..Pack::<V>::WIDTH],
+                    &block.inverse[column * S::STRETCHES + v][at..at + Pack::<V>::WIDTH],
                 );
                 sum = sum + m.at(column * S::DIM + i) * g;
             }
@@ -180,7 +180,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         let mut ratio = Pack::splat(simd, 1.0);
         let least = Pack::splat(simd, clamp[0]);
         let most = Pack::splat(simd, clamp[1]);
-        for at in (0..block.len).step_by(Pack::<V>::WIDTH) {
+        for at in packs::<V>() {
             let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
             let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
@@ -250,7 +250,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         let n = block.len;
         BlockSums {
             lagrangian_change: ordered_sum(change[..n].iter().copied()),
-            z_energy: ordered_sum((0..n).map(|e| block.measure[e] * block.z_density[e])),
+            z_energy: ordered_sum((0..n).map(|e| block.measure[0][e] * block.z_density[0][e])),
             ratio: horizontal_max(ratio),
             prox_iterations,
             ..Default::default()
@@ -267,7 +267,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             ..
         } = self;
         let (forces, energy_forces) = forces.split_at_mut(forces.len() / 2);
-        for at in (0..block.len).step_by(Pack::<V>::WIDTH) {
+        for at in packs::<V>() {
             let f = deformation_gradient::<S, V>(simd, block, positions, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
             let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
@@ -332,12 +332,12 @@ fn evaluate_at<S: Space, E: Energy<S>, V: Simd>(
 fn evaluation_sums(block: &Block) -> BlockSums {
     let n = block.len;
     let mut sums = BlockSums {
-        f_energy: ordered_sum((0..n).map(|e| block.measure[e] * block.f_density[e])),
+        f_energy: ordered_sum((0..n).map(|e| block.measure[0][e] * block.f_density[0][e])),
         smallest: f64::INFINITY,
         ..Default::default()
     };
     for e in 0..n {
-        let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
+        let (largest, smallest) = (block.stretch[0][e], block.stretch[1][e]);
         sums.largest = sums.largest.max(largest);
         sums.smallest = sums.smallest.min(smallest);
         sums.inverted += usize::from(!(smallest > 0.0));

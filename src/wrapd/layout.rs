@@ -5,6 +5,7 @@ use super::block::{BLOCK, Block};
 use crate::energy::Energy;
 use crate::geometry::RestShape;
 use crate::space::{Components, Space};
+use core::array::from_fn;
 
 /// Elements in the order of their lowest slots, so that the positions a block reads and the forces a
 /// vertex gathers are close together.
@@ -30,25 +31,26 @@ pub fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
         .map(|begin| {
             let len = (rest.len() - begin).min(BLOCK);
             let source = |e: usize| begin + e.min(len - 1);
-            let row = |count: usize| vec![0.0; count * BLOCK];
+            let zeros = |count: usize| vec![[0.0; BLOCK]; count];
+            let constant = |value: f64| vec![[value; BLOCK]];
             Block {
                 len,
-                vertices: (0..(k + 1) * BLOCK)
-                    .map(|i| slot[rest.simplex(source(i % BLOCK))[i / BLOCK] as usize])
+                vertices: (0..=k)
+                    .map(|v| from_fn(|e| slot[rest.simplex(source(e))[v] as usize]))
                     .collect(),
-                inverse: (0..k * k * BLOCK)
-                    .map(|i| rest.inverse[source(i % BLOCK) * k * k + i / BLOCK])
+                inverse: (0..k * k)
+                    .map(|c| from_fn(|e| rest.inverse[source(e) * k * k + c]))
                     .collect(),
-                measure: (0..BLOCK).map(|e| rest.measure[source(e)]).collect(),
-                stiffness: vec![E::REST_STIFFNESS; BLOCK],
-                candidate: vec![E::REST_STIFFNESS; BLOCK],
-                gradient: row(S::Gradient::<f64>::LEN),
-                z: row(local),
-                u: row(local),
-                sigma: vec![1.0; S::STRETCHES * BLOCK],
-                z_density: row(1),
-                f_density: row(1),
-                stretch: row(2),
+                measure: vec![from_fn(|e| rest.measure[source(e)])],
+                stiffness: constant(E::REST_STIFFNESS),
+                candidate: constant(E::REST_STIFFNESS),
+                gradient: zeros(S::Gradient::<f64>::LEN),
+                z: zeros(local),
+                u: zeros(local),
+                sigma: vec![[1.0; BLOCK]; S::STRETCHES],
+                z_density: zeros(1),
+                f_density: zeros(1),
+                stretch: zeros(2),
                 sums: Default::default(),
             }
         })

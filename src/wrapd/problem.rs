@@ -31,15 +31,31 @@ impl Problem<'_> {
         if start.len() != n * S::DIM {
             return wrong("start", n * S::DIM, start.len());
         }
-        if rest.vertices.len() != rest.len() * (S::STRETCHES + 1) {
-            return wrong(
-                "rest.vertices",
-                rest.len() * (S::STRETCHES + 1),
-                rest.vertices.len(),
-            );
+        if rest.stretches != S::STRETCHES {
+            return wrong("rest.stretches", S::STRETCHES, rest.stretches);
         }
-        if rest.vertices.iter().any(|&v| v as usize >= n) {
-            return wrong("start", S::DIM, start.len());
+        let corners = rest.len() * (S::STRETCHES + 1);
+        if rest.vertices.len() != corners {
+            return wrong("rest.vertices", corners, rest.vertices.len());
+        }
+        let entries = rest.len() * S::STRETCHES * S::STRETCHES;
+        if rest.inverse.len() != entries {
+            return wrong("rest.inverse", entries, rest.inverse.len());
+        }
+        let highest = rest.vertices.iter().max().map_or(0, |&v| v as usize);
+        if highest >= n {
+            return wrong("start", (highest + 1) * S::DIM, start.len());
+        }
+        if rest.is_empty() {
+            return Err(BuildError::InvalidOption {
+                option: "rest",
+                what: "has no elements".into(),
+            });
+        }
+        for (index, &measure) in rest.measure.iter().enumerate() {
+            if !(measure > 0.0 && measure.is_finite()) {
+                return Err(BuildError::DegenerateElement { index, measure });
+            }
         }
         if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
             return Err(BuildError::InvalidOption {

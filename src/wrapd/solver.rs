@@ -205,7 +205,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         let measure: f64 = self
             .blocks
             .iter()
-            .map(|b| b.measure[..b.len].iter().sum::<f64>())
+            .map(|b| b.measure[0][..b.len].iter().sum::<f64>())
             .sum();
         let reported = |sum: f64| E::SCALE * (sum - E::ISOMETRY * measure) + E::OFFSET;
         self.report.inverted = sums.inverted;
@@ -271,7 +271,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     fn reweight(&mut self, iteration: usize) -> Result<(), SolveError> {
         parallel::for_each_chunk(&mut self.blocks, 1, |_, block| block[0].take_candidates());
         let blocks = &self.blocks;
-        self.matrix.fill(|e| blocks[e / BLOCK].stiffness[e % BLOCK]);
+        self.matrix
+            .fill(|e| blocks[e / BLOCK].stiffness[0][e % BLOCK]);
         self.history.clear();
         self.factor
             .factorize(self.matrix.matrix())
@@ -402,9 +403,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
         };
         for (place, &element) in self.order.iter().enumerate() {
             let (block, e) = (&self.blocks[place / BLOCK], place % BLOCK);
-            let (largest, smallest) = (block.stretch[e], block.stretch[BLOCK + e]);
+            let (largest, smallest) = (block.stretch[0][e], block.stretch[1][e]);
             inspection.distortion[element as usize] = relative_distortion(&[largest, smallest]);
-            inspection.weights[element as usize] = (block.stiffness[e] / E::REST_STIFFNESS) as f32;
+            inspection.weights[element as usize] =
+                (block.stiffness[0][e] / E::REST_STIFFNESS) as f32;
         }
         inspection
     }

@@ -1,0 +1,386 @@
+//! Assembly, ordering and Cholesky against dense arithmetic and another library's factorisation.
+
+use foldfree::linalg::{Cholesky, EliminationTree, NotPositiveDefinite, Order};
+use foldfree::linalg::{SymmetricAssembly, WeightedSum};
+use nalgebra_sparse::factorization::CscCholesky;
+use nalgebra_sparse::na::{DMatrix, DVector};
+use nalgebra_sparse::{CooMatrix, CscMatrix};
+
+/// The parent of a root.
+const NONE: u32 = u32::MAX;
+
+/// A small generator of pseudo-random numbers (SplitMix64).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+    /// In −1..1.
+    fn signed(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+    fn below(&mut self, n: usize) -> u32 {
+        (self.next() % n as u64) as u32
+    }
+}
+
+/// A graph as edges (a, b, weight > 0) on `n` vertices.
+struct Graph {
+    n: usize,
+    edges: Vec<(u32, u32, f64)>,
+}
+
+/// A w × h grid with diagonals, as a mesh has.
+fn grid(w: usize, h: usize) -> Graph {
+    let at = |x: usize, y: usize| (y * w + x) as u32;
+    let mut random = Random(3);
+    let mut edges = Vec::new();
+    for y in 0..h {
+        for x in 0..w {
+            for (dx, dy) in [(1, 0), (0, 1), (1, 1)] {
+                if x + dx < w && y + dy < h {
+                    edges.push((at(x, y), at(x + dx, y + dy), 1.1 + random.signed()));
+                }
+            }
+        }
+    }
+    Graph { n: w * h, edges }
+}
+
+/// `count` random edges; few of them leave it in many pieces, some vertices alone.
+fn random_graph(n: usize, count: usize, seed: u64) -> Graph {
+    let mut random = Random(seed);
+    let edges = (0..count)
+        .map(|_| (random.below(n), random.below(n), 1.1 + random.signed()))
+        .filter(|(a, b, _)| a != b)
+        .collect();
+    Graph { n, edges }
+}
+
+fn star(n: usize) -> Graph {
+    let edges = (1..n as u32).map(|v| (0, v, 1.0)).collect();
+    Graph { n, edges }
+}
+
+fn graphs() -> Vec<Graph> {
+    vec![
+        random_graph(1, 0, 0),
+        random_graph(2, 0, 0),
+        random_graph(2, 3, 1),
+        random_graph(3, 1, 2),
+        random_graph(7, 9, 2),
+        random_graph(50, 30, 3),
+        random_graph(60, 300, 4),
+        random_graph(200, 150, 5),
+        random_graph(40, 2000, 6),
+        star(30),
+        grid(1, 40),
+        grid(9, 7),
+        grid(40, 31),
+    ]
+}
+
+impl Graph {
+    /// The contributions of the Laplacian plus a small multiple of the identity, in both triangles
+    /// and any order.
+    fn contributions(&self) -> Vec<(u32, u32, f64)> {
+        let edges = self.edges.iter();
+        let mut list: Vec<_> = edges
+            .flat_map(|&(a, b, w)| [(a, a, w), (b, b, w), (a, b, -w)])
+            .collect();
+        list.extend((0..self.n as u32).map(|v| (v, v, 0.1)));
+        let mut random = Random(9);
+        for i in (1..list.len()).rev() {
+            list.swap(i, random.below(i + 1) as usize);
+        }
+        list
+    }
+
+    /// The whole matrix with `unknown[v]` the row of vertex v.
+    fn coo(&self, unknown: &[u32]) -> CooMatrix<f64> {
+        let mut coo = CooMatrix::new(self.n, self.n);
+        for (a, b, w) in self.contributions() {
+            let (i, j) = (unknown[a as usize] as usize, unknown[b as usize] as usize);
+            coo.push(i, j, w);
+            if i != j {
+                coo.push(j, i, w);
+            }
+        }
+        coo
+    }
+
+    /// The elimination order and, for each vertex, its place in it.
+    fn order(&self) -> (Order, Vec<u32>) {
+        let order = Cholesky::order(self.n, self.edges.iter().map(|&(a, b, _)| (a, b)));
+        let mut place = vec![u32::MAX; self.n];
+        for (k, &v) in order.unknowns.iter().enumerate() {
+            assert_eq!(place[v as usize], u32::MAX, "vertex {v} comes twice");
+            place[v as usize] = k as u32;
+        }
+        assert!(place.iter().all(|&k| k != u32::MAX));
+        (order, place)
+    }
+
+    /// Assembled in elimination order.
+    fn assembled(&self, place: &[u32]) -> SymmetricAssembly {
+        let list = self.contributions();
+        let at = |v: u32| place[v as usize];
+        let mut assembly =
+            SymmetricAssembly::new(self.n, list.iter().map(|&(a, b, _)| (at(a), at(b))));
+        assembly.fill(|c| list[c].2);
+        assembly
+    }
+}
+
+fn dense(matrix: &CscMatrix<f64>) -> DMatrix<f64> {
+    let mut out = DMatrix::zeros(matrix.nrows(), matrix.ncols());
+    for (i, j, value) in matrix.triplet_iter() {
+        out[(i, j)] += value;
+        if i != j {
+            out[(j, i)] += value;
+        }
+    }
+    out
+}
+
+#[test]
+fn assembly_adds_up() {
+    for graph in graphs() {
+        let natural: Vec<u32> = (0..graph.n as u32).collect();
+        let assembly = graph.assembled(&natural);
+        let matrix = assembly.matrix();
+        let coo = graph.coo(&natural);
+        let mut expected = DMatrix::zeros(graph.n, graph.n);
+        coo.triplet_iter()
+            .for_each(|(i, j, w)| expected[(i, j)] += w);
+        assert!((dense(matrix) - expected).amax() < 1e-13);
+        // sorted columns that begin with the diagonal
+        for j in 0..graph.n {
+            let column = matrix.col(j);
+            assert_eq!(column.row_indices()[0], j);
+            assert!(column.row_indices().is_sorted_by(|a, b| a < b));
+        }
+    }
+}
+
+#[test]
+fn fixed_unknowns_are_left_out() {
+    let list: [(u32, u32, f64); 5] = [
+        (0, 5, 1.0),
+        (5, 5, 2.0),
+        (1, 0, 3.0),
+        (u32::MAX, 1, 4.0),
+        (0, 1, 0.5),
+    ];
+    let mut assembly = SymmetricAssembly::new(2, list.iter().map(|e| (e.0, e.1)));
+    assembly.fill(|c| list[c].2);
+    let expected = DMatrix::from_row_slice(2, 2, &[0.0, 3.5, 3.5, 0.0]);
+    assert_eq!(dense(assembly.matrix()), expected);
+}
+
+#[test]
+fn a_weighted_sum_is_the_sum_of_weighted_elements() {
+    let graph = grid(9, 8);
+    let weights: Vec<f64> = (0..graph.edges.len()).map(|e| 1.0 + e as f64).collect();
+    let contributions: Vec<(u32, u32, u32, f64)> = graph
+        .edges
+        .iter()
+        .enumerate()
+        .flat_map(|(e, &(a, b, w))| {
+            let e = e as u32;
+            [(a, a, e, w), (b, a, e, -w), (b, b, e, w)]
+        })
+        .collect();
+    // three unknowns fixed
+    let n = graph.n - 3;
+    let mut sum = WeightedSum::new(n, &contributions);
+    for scale in [1.0, 0.25] {
+        sum.fill(|e| scale * weights[e]);
+        let mut expected = DMatrix::zeros(graph.n, graph.n);
+        for &(i, j, e, w) in &contributions {
+            let value = w * scale * weights[e as usize];
+            expected[(i as usize, j as usize)] += value;
+            if i != j {
+                expected[(j as usize, i as usize)] += value;
+            }
+        }
+        let expected = expected.view((0, 0), (n, n)).into_owned();
+        let error = (dense(sum.matrix()) - &expected).amax();
+        assert!(error <= 1e-14 * expected.amax(), "{error:e}");
+    }
+}
+
+#[test]
+fn the_solution_is_that_of_another_library() {
+    for graph in graphs() {
+        let n = graph.n;
+        let (order, place) = graph.order();
+        let assembly = graph.assembled(&place);
+        let mut factor = Cholesky::analyze(assembly.matrix(), &order.parts).unwrap();
+        // factoring again must not depend on what was there
+        for round in 0..2 {
+            factor.factorize(assembly.matrix()).unwrap();
+            assert_eq!(factor.dimension(), n);
+            let natural: Vec<u32> = (0..n as u32).collect();
+            let oracle = CscCholesky::factor(&CscMatrix::from(&graph.coo(&natural))).unwrap();
+            let mut random = Random(n as u64 + round);
+            for columns in 1..=3 {
+                let b = DMatrix::from_fn(n, columns, |_, _| random.signed());
+                let expected = oracle.solve(&b);
+                let mut x = vec![0.0; n * columns];
+                for v in 0..n {
+                    for c in 0..columns {
+                        x[place[v] as usize * columns + c] = b[(v, c)];
+                    }
+                }
+                factor.solve_in_place(&mut x, columns);
+                for v in 0..n {
+                    for c in 0..columns {
+                        let error = (x[place[v] as usize * columns + c] - expected[(v, c)]).abs();
+                        // condition number at most about 8/0.1 · degree
+                        assert!(error <= 1e-12 * expected.amax(), "{n}: {error:e}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_factor_has_no_padding() {
+    for graph in graphs() {
+        let (order, place) = graph.order();
+        let assembly = graph.assembled(&place);
+        let factor = Cholesky::analyze(assembly.matrix(), &order.parts).unwrap();
+        let oracle = CscCholesky::factor(&CscMatrix::from(&graph.coo(&place))).unwrap();
+        assert_eq!(factor.factor_entries(), oracle.l().nnz());
+    }
+}
+
+#[test]
+fn no_unknowns_and_one() {
+    let nothing = SymmetricAssembly::new(0, [(0, 0), (3, 1)].into_iter());
+    let order = Cholesky::order(0, std::iter::empty());
+    let mut factor = Cholesky::analyze(nothing.matrix(), &order.parts).unwrap();
+    factor.factorize(nothing.matrix()).unwrap();
+    factor.solve_in_place(&mut [], 2);
+    assert_eq!((factor.dimension(), factor.factor_entries()), (0, 0));
+
+    let mut one = SymmetricAssembly::new(1, [(0, 0)].into_iter());
+    one.fill(|_| 4.0);
+    for parts in [Cholesky::order(1, std::iter::empty()).parts, vec![]] {
+        let mut factor = Cholesky::analyze(one.matrix(), &parts).unwrap();
+        factor.factorize(one.matrix()).unwrap();
+        let mut x = [8.0, -4.0];
+        factor.solve_in_place(&mut x, 2);
+        assert_eq!(x, [2.0, -1.0]);
+    }
+}
+
+#[test]
+fn a_pivot_that_is_not_positive_is_named() {
+    for graph in [grid(12, 9), grid(40, 31), random_graph(60, 80, 7)] {
+        let (order, place) = graph.order();
+        let good = graph.assembled(&place);
+        for bad in [0, 1, graph.n / 2, graph.n - 1] {
+            // in elimination order: the pivots before `bad` are those of the good matrix
+            for value in [-1.0, -1e9, f64::NAN] {
+                let mut matrix = good.matrix().clone();
+                let diagonal = matrix.col_offsets()[bad];
+                matrix.values_mut()[diagonal] = value;
+                let mut factor = Cholesky::analyze(&matrix, &order.parts).unwrap();
+                let error = factor.factorize(&matrix);
+                assert_eq!(error, Err(NotPositiveDefinite { pivot: bad }), "{value}");
+                // and the next success is a success
+                factor.factorize(good.matrix()).unwrap();
+                let mut x = vec![1.0; graph.n];
+                factor.solve_in_place(&mut x, 1);
+                // (L + 0.1 I) 10 = 1
+                assert!(x.iter().all(|x| (x - 10.0).abs() < 1e-9));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_tree_is_split_into_parts_that_know_nothing_of_each_other() {
+    for graph in graphs() {
+        let natural: Vec<u32> = (0..graph.n as u32).collect();
+        let upper = graph.assembled(&natural).matrix().transpose();
+        let tree = EliminationTree::new(&upper);
+        for parts in [1, 2, 8] {
+            let (order, ends) = tree.split(&upper, parts);
+            let mut place = vec![usize::MAX; graph.n];
+            for (k, &j) in order.iter().enumerate() {
+                assert_eq!(place[j as usize], usize::MAX);
+                place[j as usize] = k;
+            }
+            assert_eq!(order.len(), graph.n);
+            assert!(ends.len() == parts && ends.is_sorted());
+            assert!(ends.iter().all(|&e| e <= graph.n));
+            for (j, &parent) in tree.parent.iter().enumerate() {
+                if parent != NONE {
+                    assert!(
+                        place[j] < place[parent as usize],
+                        "a child after its parent"
+                    );
+                }
+            }
+            // entries of L join columns of one part, or a part and the top
+            let part = |k: usize| ends.partition_point(|&e| e <= k);
+            tree.for_each_entry(&upper, |i, j| {
+                let (i, j) = (part(place[i]), part(place[j]));
+                assert!(i == j || i == parts, "part {j} reaches into part {i}");
+            });
+        }
+    }
+}
+
+#[test]
+fn a_tree_that_needs_balance_gets_it() {
+    let graph = grid(60, 60);
+    let (order, _) = graph.order();
+    let mut begin = 0;
+    let sizes: Vec<usize> = order
+        .parts
+        .iter()
+        .map(|&end| {
+            let size = end - begin;
+            begin = end;
+            size
+        })
+        .collect();
+    let largest = sizes.iter().copied().max().unwrap();
+    assert!(largest * 3 < graph.n, "{sizes:?}");
+    // the top is what is not side by side
+    assert!((graph.n - begin) * 3 < graph.n, "{sizes:?}");
+}
+
+/// The residual of a badly conditioned system is that of a backward stable solver.
+#[test]
+fn residuals_are_small_whatever_the_weights() {
+    let mut graph = grid(50, 50);
+    let mut random = Random(11);
+    for edge in &mut graph.edges {
+        edge.2 = 10f64.powf(4.5 + 4.5 * random.signed());
+    }
+    let (order, place) = graph.order();
+    let assembly = graph.assembled(&place);
+    let mut factor = Cholesky::analyze(assembly.matrix(), &order.parts).unwrap();
+    factor.factorize(assembly.matrix()).unwrap();
+    let a = CscMatrix::from(&graph.coo(&place));
+    let b: Vec<f64> = (0..graph.n).map(|_| random.signed()).collect();
+    let mut x = b.clone();
+    factor.solve_in_place(&mut x, 1);
+    let product = &a * DVector::from_vec(x.clone());
+    let size = a.values().iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let length = x.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    for (row, b) in product.iter().zip(&b) {
+        assert!((row - b).abs() <= 1e-13 * size * length, "{}", row - b);
+    }
+}
