@@ -45,9 +45,6 @@ fn weighted(
     let free: Vec<u32> = (0..n as u32)
         .filter(|&v| unknown[v as usize] != FIXED)
         .collect();
-    if free.is_empty() {
-        return Ok(map); // every vertex lies on the boundary
-    }
     for (k, &v) in free.iter().enumerate() {
         unknown[v as usize] = k as u32;
     }
