@@ -11,14 +11,18 @@ import { buildStd, tools, wasmBindgen, wasmEnvironment } from '../scripts/toolch
 
 const dist = join(root, 'www/dist');
 const CANVAS_SOURCES = ['Cargo.lock', 'www/Cargo.toml', 'www/src', 'www/assets/fonts', 'www/build.mjs', 'scripts/toolchain.mjs'];
+// The canvas is large and not hot: small, and quick to build. The profile in Cargo.toml is the solver's.
+const PROFILE = {
+  CARGO_PROFILE_RELEASE_OPT_LEVEL: 's', CARGO_PROFILE_RELEASE_DEBUG: 'false',
+  CARGO_PROFILE_RELEASE_LTO: 'false', CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
+};
 const CANVAS = 'www/dist/canvas/foldfree_www_bg.wasm';
 
 async function buildCanvas(force) {
   const sources = hash(CANVAS_SOURCES);
   if (!force && isStamped('www/dist/.canvas.stamp', sources) && existsSync(join(root, CANVAS))) return;
   const env = await wasmEnvironment();
-  // The canvas is large and not hot: for size. The root's profile is the solver's, for speed.
-  Object.assign(env, { CARGO_PROFILE_RELEASE_OPT_LEVEL: 's', CARGO_PROFILE_RELEASE_DEBUG: 'false' });
+  Object.assign(env, PROFILE);
   const args = ['build', '--release', '--package', 'foldfree-www', '--target', 'wasm32-unknown-unknown', ...buildStd];
   await run('cargo', args, {
     env, label: 'building the canvas', estimate: '4 minutes', log: join(tools, 'logs', 'canvas.log'),

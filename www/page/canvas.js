@@ -61,11 +61,16 @@ class Board {
     this.canvas.pushFrame(numbers, phases, map);
   }
 
+  /** Pairs of boundary edges that meet in the newest map. */
+  crossings(list) {
+    this.canvas.setCrossings(Uint32Array.from(list.flatMap(({ edges }) => edges.flat())));
+  }
+
   show(index) { this.canvas.showFrame(index); }
   facts(pairs) { this.canvas.setFacts(pairs.flat()); }
   theme(dark) { this.canvas.setTheme(dark); }
   view(name) { this.canvas.setView(name); }
-  switch(name, on) { this.canvas.set(name, on); }
+  toggle(name) { this.canvas.toggle(name); }
   fit() { this.canvas.fitViews(); }
   reducedMotion(on) { this.canvas.setReducedMotion(on); }
 

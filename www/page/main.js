@@ -6,6 +6,7 @@ import { acceptDrops, readMeshFile, save } from './files.js';
 import { listenToKeys } from './keys.js';
 import { clearNotice, describe, notice } from './notice.js';
 import { Session } from './session.js';
+import { connectViews, flip, flipTheme, follow, project, projecting } from './views.js';
 import { METHODS, ending, number, spoken, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
@@ -16,7 +17,6 @@ let source = { sample: wanted.sample, triangles: wanted.triangles }; // what is,
 let board; // the canvas
 let session; // the solver
 let playing = false;
-let stepping = false;
 let shown = 0;
 let records = []; // numbers of the iterates the canvas has, prepared start included
 let startsWhenReady; // an act a person asked for before the solver had come
@@ -34,12 +34,13 @@ function setWhere(record) {
     return span;
   };
   const hatch = record.inverted > 0 ? [part('hatch')] : [];
-  $('status').replaceChildren(
+  const parts = [
     part('quiet', `iteration ${record.iteration}${newest > record.iteration ? ` of ${newest}` : ''}`),
     part('', `energy ${number(record.energy)}`),
     part(`inverted ${record.inverted > 0 ? 'bad' : 'good'}`, ...hatch, `${whole(record.inverted)} inverted`),
-    part('quiet time', record.iteration > 0 ? `${number(stepMilliseconds(record), 2)} ms` : ''),
-  );
+    ...(record.iteration > 0 ? [part('quiet time', `${number(stepMilliseconds(record), 2)} ms`)] : []),
+  ];
+  $('status').replaceChildren(...parts.flatMap((element, i) => (i ? [part('dot', ' · '), element] : [element])));
   const handle = $('history');
   handle.max = String(newest);
   handle.value = String(shown);
@@ -70,6 +71,17 @@ function show(index, { quietly = false } = {}) {
   if (!quietly) speak(spoken(records[shown]));
 }
 
+let soon;
+/** Shows the newest iterate with the next frame, however many come until then. */
+function showSoon() {
+  shown = records.length - 1;
+  if (document.hidden || session.finished) {
+    cancelAnimationFrame(soon);
+    soon = undefined;
+    show(shown);
+  } else soon ??= requestAnimationFrame(() => { soon = undefined; show(shown); });
+}
+
 function setFacts() {
   if (!session?.problem) return;
   const { startKind, setupSeconds, notes } = session.problem;
@@ -85,7 +97,7 @@ function setFacts() {
   const proof = session.certificate;
   if (proof) {
     pairs.push(['certificate', proof.locallyInjective ? 'no triangle inverted (exact)' : `${proof.inverted.length} inverted (exact)`]);
-    if (proof.locallyInjective) pairs.push(['', proof.globallyInjective ? 'nothing overlaps (exact)' : 'the boundary crosses itself']);
+    if (proof.locallyInjective) pairs.push(['', proof.globallyInjective ? 'nothing overlaps (exact)' : `${proof.boundaryCrossingCount || ''} boundary crossings (exact)`]);
   }
   board.facts(pairs);
 }
@@ -180,34 +192,39 @@ function setPlaying(on) {
 }
 
 function pause() {
+  task += 1;
   if (!playing) return;
   setPlaying(false);
   if (records[shown]) speak(spoken(records[shown]), { now: true });
 }
 
-/** Makes one step and shows it; false when there was none to make. */
-async function stepOnce() {
-  if (stepping) return true;
-  stepping = true;
+let task = 0; // what a person asked for last; anything older stops
+let lastStep = Promise.resolve();
+/** Makes one step after those asked for before it and shows it; false when there is none to make. */
+function stepOnce() {
+  lastStep = lastStep.then(makeStep);
+  return lastStep;
+}
+
+async function makeStep() {
   try {
-    const following = shown >= records.length - 1;
     const step = await session.step();
     if (!step) return false;
+    const following = shown >= records.length - 2; // a person may have scrubbed away meanwhile
     board.push(step);
-    if (following) show(records.length - 1);
-    else setWhere(records[shown]);
     if (session.finished) finish(step);
+    if (following) showSoon();
+    else setWhere(records[shown]);
     return !session.finished;
   } catch (error) {
     notice('The solver stopped', describe(error));
     return false;
-  } finally {
-    stepping = false;
   }
 }
 
 function finish(step) {
   setFacts();
+  board.crossings(session.certificate?.boundaryCrossings ?? []);
   if (step.status !== 'converged') notice('The solver ended', `${ending(step)} after ${step.iteration} iterations.`, { plain: true });
 }
 
@@ -223,14 +240,10 @@ async function play() {
   show(records.length - 1, { quietly: true });
   let due = performance.now();
   while (playing) {
+    if (!(await stepOnce())) pause();
     const pace = Number($('pace').value);
-    const drawn = performance.now();
-    // As fast as it can: several steps a frame, the page still at its frame rate.
-    do {
-      if (!(await stepOnce())) { pause(); break; }
-    } while (playing && pace === 0 && performance.now() - drawn < 10);
-    await nextFrame();
-    if (pace > 0) {
+    if (pace > 0) { // else as fast as it can: the worker steps, the page draws the newest every frame
+      await nextFrame();
       due = Math.max(due + 1000 / pace, performance.now() - 100);
       while (playing && performance.now() < due) await nextFrame();
     }
@@ -253,9 +266,9 @@ async function steps(count) {
   pause();
   $('invite').hidden = true;
   if (shown < records.length - 1) return show(shown + count);
-  for (let i = 0; i < count; i += 1) {
+  const mine = task;
+  for (let i = 0; i < count && mine === task; i += 1) {
     if (!(await stepOnce())) break;
-    if (count > 1) await nextFrame();
   }
 }
 
@@ -287,58 +300,6 @@ function invite() {
       : `Nothing is upside down in this map. ${name} will make it less distorted.`;
 }
 
-// ——— theme, views, projector ———
-
-const darkScheme = matchMedia('(prefers-color-scheme: dark)');
-const isDark = () => (document.documentElement.dataset.theme ?? (darkScheme.matches ? 'dark' : 'light')) === 'dark';
-darkScheme.addEventListener('change', () => board?.theme(isDark()));
-
-function flipTheme() {
-  const theme = isDark() ? 'light' : 'dark';
-  document.documentElement.dataset.theme = theme;
-  const asked = new URLSearchParams(location.search);
-  asked.set('theme', theme);
-  history.replaceState(null, '', `?${asked}`);
-  board?.theme(theme === 'dark');
-}
-
-const narrow = matchMedia('(max-width: 719.98px)');
-let tab = 'map';
-
-function arrange() {
-  board?.view(narrow.matches ? tab : 'all');
-  const wide = innerWidth >= 1000;
-  const box = $('invite').style;
-  // Over the middle of the map, in the lower third of it.
-  const projecting = document.body.classList.contains('projecting');
-  const column = narrow.matches ? 0 : wide && !projecting ? 292 : 0;
-  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * 0.75)`);
-  box.setProperty('--invite-y', narrow.matches ? '50%' : '34%');
-}
-
-function choose(view) {
-  tab = view;
-  for (const button of document.querySelectorAll('[role="tab"]')) {
-    const on = button.dataset.view === view;
-    button.setAttribute('aria-selected', String(on));
-    button.tabIndex = on ? 0 : -1;
-  }
-  arrange();
-}
-
-function project() {
-  const on = document.body.classList.toggle('projecting');
-  $('projector').setAttribute('aria-pressed', String(on));
-  board?.projector(on ? 1.9 : 1, !on);
-  arrange();
-}
-
-const switches = { wireframe: false, tinted: true, gap: false, seconds: false };
-function flip(name) {
-  switches[name] = !switches[name];
-  board?.switch(name, switches[name]);
-}
-
 // ——— controls ———
 
 async function change(key, value) {
@@ -354,6 +315,16 @@ async function changeSample() {
   [wanted.sample, wanted.triangles] = [next.sample, next.triangles];
   if (!whenReady(() => open(next))) return;
   await open(next, { busy: next.triangles > 10_000 ? 'Building the surface' : '' });
+}
+
+/** The library knows its samples best. */
+function listSamples(shapes) {
+  const options = [...$('sample').options];
+  for (const { name, title, description } of shapes) {
+    const option = options.find((o) => o.value === name) ?? new Option(title, name);
+    option.title = description;
+    if (!option.parentNode) $('sample').add(option);
+  }
 }
 
 async function openFile(file) {
@@ -426,31 +397,19 @@ function connect() {
     style.right = `${Math.max(8, innerWidth - at.right)}px`;
   });
   $('share').addEventListener('click', share);
-  $('theme').addEventListener('click', flipTheme);
-  $('projector').addEventListener('click', project);
   $('help').addEventListener('click', help);
   $('setup-toggle').addEventListener('click', () => {
     const shownNow = $('setup').classList.toggle('shown');
     $('setup-toggle').setAttribute('aria-expanded', String(shownNow));
   });
-  const tabs = [...document.querySelectorAll('[role="tab"]')];
-  for (const button of tabs) button.addEventListener('click', () => choose(button.dataset.view));
-  tabs[0].parentElement.addEventListener('keydown', (event) => {
-    const turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!turn) return;
-    const next = tabs[(tabs.findIndex((button) => button.dataset.view === tab) + turn + tabs.length) % tabs.length];
-    choose(next.dataset.view);
-    next.focus();
-  });
-  narrow.addEventListener('change', arrange);
-  addEventListener('resize', arrange);
+  connectViews();
   const methods = Object.keys(METHODS);
   listenToKeys({
     ' ': play, ArrowRight: () => steps(1), 'Shift+ArrowRight': () => steps(10),
     ArrowLeft: () => { pause(); show(shown - 1); }, 'Shift+ArrowLeft': () => { pause(); show(shown - 10); },
     Home: () => { pause(); show(0); }, End: () => { pause(); show(records.length - 1); },
     r: reset, f: () => board?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
-    p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: clearNotice,
+    p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     ...Object.fromEntries(methods.map((method, i) => [String(i + 1), () => change('method', method)])),
   });
 }
@@ -462,6 +421,13 @@ function help() {
 }
 
 // ——— the beginning ———
+
+/** The canvas wants neither the focus nor the keyboard: the page has its keys. */
+function quietCanvas() {
+  for (const agent of document.querySelectorAll('body > input, #stage > input')) agent.inert = true;
+  $('canvas').tabIndex = -1;
+  $('canvas').blur();
+}
 
 async function begin() {
   connect();
@@ -476,11 +442,8 @@ async function begin() {
     setBusy('');
     return notice('The drawing board did not start', `${describe(error)} The page needs WebGL 2 and WebAssembly.`);
   }
-  board.theme(isDark());
-  const still = matchMedia('(prefers-reduced-motion: reduce)');
-  board.reducedMotion(still.matches);
-  still.addEventListener('change', () => board.reducedMotion(still.matches));
-  arrange();
+  quietCanvas();
+  follow(board);
 
   const drawn = await prepared;
   if (drawn) {
@@ -499,6 +462,7 @@ async function begin() {
   try {
     const foldfree = await load({ onProgress: (loaded, total) => { if (!drawn) setBusy('Loading the solver', total ? loaded / total : undefined); } });
     foldfreeThreads = foldfree.threads;
+    listSamples(foldfree.shapes);
     session = new Session(foldfree);
   } catch (error) {
     setBusy('');
@@ -512,5 +476,12 @@ async function begin() {
   if (act) await act();
   else if (wanted.at) await steps(wanted.at);
 }
+
+// For the console, and for tests.
+globalThis.foldfreePage = {
+  get board() { return board?.canvas; },
+  get session() { return session; },
+  get shown() { return shown; },
+};
 
 begin();

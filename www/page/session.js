@@ -76,6 +76,8 @@ export class Session {
     if (!solver || this.finished) return undefined;
     const step = await solver.step();
     if (solver !== this.#solver) return undefined;
+    // Seconds of solving: the solver's own clock also runs while it waits for the next step.
+    step.seconds = this.newest.seconds + step.phases.reduce((sum, phase) => sum + phase.milliseconds, 0) / 1000;
     this.records.push(numbersOf(step));
     if (step.status !== 'running') {
       const { certificate } = await solver.result();

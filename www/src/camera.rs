@@ -13,6 +13,8 @@ pub struct Orbit {
     pub centre: Vec3,
     /// Radius of the bounding sphere, in the surface's unit.
     pub radius: f32,
+    /// Magnification at which the surface filled a square view at first.
+    fit: f32,
 }
 
 impl Orbit {
@@ -48,12 +50,41 @@ impl Orbit {
         let frame = DMat3::from_cols(right, up.cross(right), up).transpose();
         let front = Quat::from_mat3(&frame.as_mat3());
         let rotation = Quat::from_rotation_x(-0.92) * Quat::from_rotation_z(-0.5) * front;
-        Self {
+        let orbit = Self {
             rotation,
             zoom: 1.0,
             centre: centre.as_vec3(),
             radius: radius as f32,
+            fit: 1.0,
+        };
+        orbit.centred(positions)
+    }
+
+    /// Moves the centre so that the points appear in the middle of the view, and the radius so that
+    /// they fill it.
+    fn centred(mut self, positions: &[f64]) -> Self {
+        let points = || positions.as_chunks::<3>().0.iter();
+        for _ in 0..4 {
+            let matrix = self.matrix(1.0);
+            let (mut low, mut high) = (Vec2::MAX, Vec2::MIN);
+            for p in points() {
+                let v = matrix
+                    .project_point3(DVec3::from_array(*p).as_vec3())
+                    .truncate();
+                (low, high) = (low.min(v), high.max(v));
+            }
+            if low.x > high.x {
+                return self;
+            }
+            let middle = 0.5 * (low + high) * self.radius / self.zoom;
+            self.centre += self.rotation.inverse() * middle.extend(0.0);
+            let reach = 0.5 * (high - low).max_element();
+            self.zoom = (self.zoom * 0.86 / reach.max(1e-6)).clamp(0.5, 3.0);
         }
+        // From here on, 1 is the zoom that fits.
+        self.fit = self.zoom;
+        self.zoom = 1.0;
+        self
     }
 
     /// Turns by a drag of `delta` points in a view `size` points wide.
@@ -72,8 +103,8 @@ impl Orbit {
     pub fn matrix(&self, aspect: f32) -> Mat4 {
         let field = 0.5f32;
         let distance = 1.0 / (0.5 * field).sin();
-        let fit = self.zoom / aspect.min(1.0).recip();
-        let projection = Mat4::perspective_rh_gl(field, aspect, distance - 2.0, distance + 2.0);
+        let fit = self.fit * self.zoom * aspect.min(1.0);
+        let projection = Mat4::perspective_rh_gl(field, aspect, distance - 1.6, distance + 1.6);
         Mat4::from_scale(Vec3::new(fit, fit, 1.0))
             * projection
             * Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))
@@ -108,9 +139,9 @@ fn principal_axes(positions: &[f64]) -> [DVec3; 3] {
             for row in &mut m {
                 (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }
-            for k in 0..3 {
-                (m[p][k], m[q][k]) = (c * m[p][k] - s * m[q][k], s * m[p][k] + c * m[q][k]);
-            }
+            let (row_p, row_q) = (m[p], m[q]);
+            m[p] = std::array::from_fn(|k| c * row_p[k] - s * row_q[k]);
+            m[q] = std::array::from_fn(|k| s * row_p[k] + c * row_q[k]);
             (axes[p], axes[q]) = (c * axes[p] - s * axes[q], s * axes[p] + c * axes[q]);
         }
     }

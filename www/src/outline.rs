@@ -24,14 +24,6 @@ pub fn segments_of_edges(edges: &[[u32; 2]], uv: &[f32], out: &mut Vec<f32>) {
     }
 }
 
-/// Segments of the outlines of `triangles` in a map.
-pub fn segments_of_triangles(triangles: &[u32], indices: &[u32], uv: &[f32], out: &mut Vec<f32>) {
-    for &t in triangles {
-        let [a, b, c] = [0, 1, 2].map(|k| indices[3 * t as usize + k]);
-        segments_of_edges(&[[a, b], [b, c], [c, a]], uv, out);
-    }
-}
-
 /// Corner values (three a triangle) from vertex values of `width` floats, for unindexed drawing.
 pub fn per_corner(indices: &[u32], values: &[f32], width: usize, out: &mut Vec<f32>) {
     out.clear();
@@ -101,9 +93,36 @@ pub fn painting_order(distortions: &[f32], thinning: usize, out: &mut Vec<u32>) 
     }
 }
 
+/// Where two edges of a map meet: the crossing of their lines if it is on both, else the middle of
+/// the two (edges that touch or lie on each other).
+pub fn meeting(edges: &[[u32; 2]; 2], uv: &[f32]) -> [f32; 2] {
+    let at = |v: u32| glam::Vec2::new(uv[2 * v as usize], uv[2 * v as usize + 1]);
+    let [[a, b], [c, d]] = edges.map(|edge| edge.map(at));
+    let (r, s) = (b - a, d - c);
+    let (t, u) = (
+        (c - a).perp_dot(s) / r.perp_dot(s),
+        (c - a).perp_dot(r) / r.perp_dot(s),
+    );
+    let on = |x: f32| (-1e-3..=1.001).contains(&x);
+    let point = if on(t) && on(u) {
+        a + t * r
+    } else {
+        0.25 * (a + b + c + d)
+    };
+    point.to_array()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn edges_meet_where_their_lines_cross() {
+        let cross = [0.0, 0.0, 2.0, 2.0, 0.0, 2.0, 2.0, 0.0f32];
+        assert_eq!(meeting(&[[0, 1], [2, 3]], &cross), [1.0, 1.0]);
+        let along = [0.0, 0.0, 2.0, 0.0, 1.0, 0.0, 3.0, 0.0f32];
+        assert_eq!(meeting(&[[0, 1], [2, 3]], &along), [1.5, 0.0]);
+    }
 
     #[test]
     fn layers_count_how_often_a_map_covers_itself() {
@@ -139,9 +158,6 @@ mod tests {
         let mut out = Vec::new();
         segments_of_edges(&[[1, 0]], &[0.0, 1.0, 2.0, 3.0], &mut out);
         assert_eq!(out, [2.0, 3.0, 0.0, 1.0]);
-        out.clear();
-        segments_of_triangles(&[0], &[0, 1, 2], &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0], &mut out);
-        assert_eq!(out.len(), 12);
     }
 
     #[test]

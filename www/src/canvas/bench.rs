@@ -15,7 +15,7 @@ const FRAME_BUDGET: usize = 192 << 20;
 
 /// How many times a map may cover itself before its triangles are drawn one for many: what lies
 /// deeper cannot be seen, and painting it would stop a graphics card.
-pub const MOST_LAYERS: usize = 24;
+const MOST_LAYERS: usize = 24;
 
 /// Earlier runs kept as curves.
 const MOST_EARLIER_RUNS: usize = 6;
@@ -40,6 +40,16 @@ pub enum PlotHeight {
     Values,
     /// Energy above the lowest any run on this problem has reached, relative.
     Gap,
+}
+
+impl PlotHeight {
+    /// The one it is not.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Values => Self::Gap,
+            Self::Gap => Self::Values,
+        }
+    }
 }
 
 /// Something the page must hear of.
@@ -94,6 +104,10 @@ pub struct Bench {
     pub inverted: Vec<u32>,
     /// Every how many triangles one is drawn in the map: 1 unless it covers itself many times.
     pub thinning: usize,
+    /// How many times the map on show covers its bounding box.
+    pub layers: usize,
+    /// Pairs of boundary edges that meet in the newest map, by its certificate.
+    pub crossings: Vec<[[u32; 2]; 2]>,
     /// Events for the page.
     pub events: Vec<Event>,
     stale: bool,
@@ -105,7 +119,7 @@ struct Scratch {
     distortions: Vec<f32>,
     corner_distortions: Vec<f32>,
     corners: Vec<f32>,
-    outline: Vec<f32>,
+    boundary: Vec<f32>,
     order: Vec<u32>,
 }
 
@@ -135,6 +149,8 @@ impl Bench {
             hover: None,
             inverted: Vec::new(),
             thinning: 1,
+            layers: 1,
+            crossings: Vec::new(),
             events: Vec::new(),
             stale: false,
             scratch: Scratch::default(),
@@ -165,6 +181,7 @@ impl Bench {
         }
         gpu::with(|gpu| gpu.set_surface(&corners, &corner_normals, &seam));
         self.earlier.clear();
+        self.crossings.clear();
         self.run = Run::default();
         self.frames.clear();
         self.hover = None;
@@ -191,7 +208,7 @@ impl Bench {
             let excess = self.earlier.len().saturating_sub(MOST_EARLIER_RUNS);
             self.earlier.drain(..excess);
         }
-        // The same solver again replaces its own curve when it ends, not before.
+        self.crossings.clear();
         self.frames.clear();
         self.pan.follows = true;
         (self.shown, self.shown_map) = (0, 0);
@@ -245,25 +262,17 @@ impl Bench {
             .corner_distortions
             .extend(scratch.distortions.iter().flat_map(|d| [*d; 3]));
         outline::per_corner(indices, map, 2, &mut scratch.corners);
-        self.thinning = outline::layers(indices, map).div_ceil(MOST_LAYERS).max(1);
+        self.layers = outline::layers(indices, map);
+        self.thinning = self.layers.div_ceil(MOST_LAYERS).max(1);
         outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
-        scratch.outline.clear();
-        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.outline);
-        let boundary = scratch.outline.len();
-        let drawn: Vec<u32> = self
-            .inverted
-            .iter()
-            .copied()
-            .step_by(self.thinning)
-            .collect();
-        outline::segments_of_triangles(&drawn, indices, map, &mut scratch.outline);
+        scratch.boundary.clear();
+        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.boundary);
         gpu::with(|gpu| {
             gpu.set_map(&MapData {
                 corners: &scratch.corners,
                 distortions: &scratch.corner_distortions,
                 order: &scratch.order,
-                outline: &scratch.outline,
-                boundary,
+                boundary: &scratch.boundary,
             });
         });
     }

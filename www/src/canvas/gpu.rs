@@ -69,7 +69,6 @@ pub struct Gpu {
     painted_corners: i32,
     seam_count: i32,
     boundary_count: i32,
-    outline_count: i32,
 }
 
 /// The iterate on show, per corner, as the GPU takes it.
@@ -80,10 +79,8 @@ pub struct MapData<'a> {
     pub distortions: &'a [f32],
     /// Corners in painting order.
     pub order: &'a [u32],
-    /// Boundary segments, then outlines of inverted triangles: x y x y.
-    pub outline: &'a [f32],
-    /// How many floats of `outline` are boundary.
-    pub boundary: usize,
+    /// Boundary segments: x y x y.
+    pub boundary: &'a [f32],
 }
 
 impl Gpu {
@@ -125,7 +122,6 @@ impl Gpu {
             painted_corners: 0,
             seam_count: 0,
             boundary_count: 0,
-            outline_count: 0,
             gl,
         };
         gpu.describe();
@@ -194,19 +190,14 @@ impl Gpu {
         self.fill(&self.normals, normals);
         self.fill(&self.seam_points, seam);
         self.seam_count = (seam.len() / 3) as i32;
-        (
-            self.corners,
-            self.painted_corners,
-            self.outline_count,
-            self.boundary_count,
-        ) = (0, 0, 0, 0);
+        (self.corners, self.painted_corners, self.boundary_count) = (0, 0, 0);
     }
 
     /// Uploads the iterate to show.
     pub fn set_map(&mut self, map: &MapData<'_>) {
         self.fill(&self.maps, map.corners);
         self.fill(&self.distortions, map.distortions);
-        self.fill(&self.outline_points, map.outline);
+        self.fill(&self.outline_points, map.boundary);
         self.gl.bind_vertex_array(Some(&self.triangles));
         self.gl.buffer_data_with_u8_array(
             Gl::ELEMENT_ARRAY_BUFFER,
@@ -216,8 +207,7 @@ impl Gpu {
         self.gl.bind_vertex_array(None);
         self.corners = map.distortions.len() as i32;
         self.painted_corners = map.order.len() as i32;
-        self.boundary_count = (map.boundary / 2) as i32;
-        self.outline_count = (map.outline.len() / 2) as i32;
+        self.boundary_count = (map.boundary.len() / 2) as i32;
     }
 
     /// Draws the surface into the current viewport.
@@ -263,17 +253,6 @@ impl Gpu {
             look.theme.outline
         };
         self.lines(&self.outline, 0, self.boundary_count, matrix, edge, 0.8);
-        let rest = self.outline_count - self.boundary_count;
-        // Outlines of many small triangles would blacken the map: thin them out.
-        let opacity = (6000.0 / rest.max(1) as f32).clamp(0.12, 1.0);
-        self.lines(
-            &self.outline,
-            self.boundary_count,
-            rest,
-            matrix,
-            look.theme.outline,
-            opacity,
-        );
         self.end();
     }
 

@@ -5,6 +5,7 @@ use eframe::egui::{self, Align2, Rect, Sense, Stroke, pos2, vec2};
 use super::bench::Bench;
 use super::style;
 use crate::colour::curve_style;
+use crate::history::{Phase, PhaseKind};
 use crate::scale::number;
 use crate::words::{citation, explain, method_name};
 
@@ -95,15 +96,12 @@ impl Column<'_> {
         let first = self.text(self.left, middle, Align2::LEFT_CENTER, name, false, true);
         let font = style::regular(style::BODY * self.bench.text);
         let ink = style::colour(self.bench.theme.ink);
-        let galley =
-            self.ui
-                .painter()
-                .layout(value.to_owned(), font, ink, room - first.width() - 14.0);
+        let width = room - first.width() - 14.0;
+        let mut job = egui::text::LayoutJob::simple(value.to_owned(), font, ink, width);
+        job.halign = egui::Align::RIGHT;
+        let galley = self.ui.painter().layout_job(job);
         let tall = galley.size().y.max(self.line() - 2.0);
-        let at = pos2(
-            self.right - galley.size().x,
-            middle - 0.5 * galley.size().y.min(self.line()),
-        );
+        let at = pos2(self.right, middle - 0.5 * galley.size().y.min(self.line()));
         self.ui.painter().galley(at, galley, ink);
         if !hint.is_empty() {
             let row = Rect::from_min_max(pos2(self.left, self.y), pos2(self.right, self.y + tall));
@@ -124,7 +122,7 @@ impl Column<'_> {
         if record.iteration == 0 {
             self.section(
                 "The start",
-                &format!("{} {}", method_name(method), citation(method)),
+                &format!("{}, {}", method_name(method), citation(method)),
             );
             let words = "No step has been made. Play or step to see what an iteration does.";
             let font = style::regular(style::SMALL * self.bench.text);
@@ -147,7 +145,8 @@ impl Column<'_> {
             &format!("{}, {}", method_name(method), citation(method)),
         );
         let total: f64 = record.phases.iter().map(|p| p.milliseconds).sum();
-        for phase in &record.phases {
+        let done = |p: &&Phase| p.count > 0 || p.kind != PhaseKind::Reweight;
+        for phase in record.phases.iter().filter(done) {
             let words = explain(method, phase.kind);
             let top = self.y;
             let line = self.line();
@@ -313,7 +312,11 @@ impl Column<'_> {
                         &ends, stroke, &dashes, &gaps, 0.0,
                     ));
             }
-            let name = format!("{} from {}", method_name(&run.method), run.start);
+            let name = if run.start == self.bench.run.start {
+                method_name(&run.method).to_owned()
+            } else {
+                format!("{}, {}", method_name(&run.method), run.start)
+            };
             self.text(
                 self.left + 34.0,
                 middle,

@@ -3,20 +3,30 @@
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 use glam::{Mat4, Vec2, Vec3};
 
-use super::bench::{Bench, MOST_LAYERS};
+use super::bench::Bench;
 use super::{gpu, style};
 use crate::colour::{self, DISTORTION_END, VERMILION};
 use crate::distortion::{corners_of, triangle_at};
+use crate::outline::meeting;
 use crate::scale::{number, whole};
 
 /// Inverted triangles that get a ring when too small to see, at most.
 const MOST_RINGS: usize = 80;
 
+/// Crosses drawn where the boundary meets itself, at most.
+const MOST_CROSSES: usize = 200;
+
 /// Draws the view and answers the pointer; returns the triangle under it.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
-    let size = Vec2::new(rect.width(), rect.height());
+    // The map keeps clear of the heading and the legend.
+    let text = bench.text;
+    let inner = Rect::from_min_max(
+        rect.min + vec2(0.0, 30.0 * text),
+        rect.max - vec2(0.0, 52.0 * text),
+    );
+    let size = Vec2::new(inner.width(), inner.height()).max(Vec2::ONE);
     let response = ui.interact(rect, ui.scope_id().with("map"), Sense::click_and_drag());
-    let from_screen = |p: Pos2| Vec2::new(p.x - rect.center().x, rect.center().y - p.y);
+    let from_screen = |p: Pos2| Vec2::new(p.x - inner.center().x, inner.center().y - p.y);
     if response.dragged() {
         let d = response.drag_delta();
         bench.pan.drag(Vec2::new(d.x, -d.y), size);
@@ -41,8 +51,10 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     }
 
     let scale = bench.pan.scale(size);
-    let half = 0.5 * size;
-    let matrix = Mat4::from_scale(Vec3::new(scale / half.x, scale / half.y, 1.0))
+    let half = Vec2::new(0.5 * rect.width(), 0.5 * rect.height());
+    let rise = (rect.center().y - inner.center().y) / half.y;
+    let matrix = Mat4::from_translation(Vec3::new(0.0, rise, 0.0))
+        * Mat4::from_scale(Vec3::new(scale / half.x, scale / half.y, 1.0))
         * Mat4::from_translation(-bench.pan.centre.extend(0.0));
     let look = bench.look(ui.pixels_per_point());
     ui.painter().add(egui::PaintCallback {
@@ -52,7 +64,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
         })),
     });
 
-    rings(ui.painter(), rect, bench, size);
+    rings(ui.painter(), inner, bench, size);
+    crossings(ui.painter(), inner, bench, size);
     let found = response
         .hover_pos()
         .filter(|_| !response.dragged())
@@ -61,6 +74,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
         response.on_hover_text_at_pointer(text);
     }
     legend(ui.painter(), rect, bench);
+    let right = inverted_key(ui.painter(), rect, bench);
     let away = if bench.pan.follows {
         String::new()
     } else {
@@ -68,9 +82,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     };
     let dropped = if bench.thinning > 1 && bench.pan.follows {
         format!(
-            "1 in {} triangles drawn: it covers itself {}-fold",
-            bench.thinning,
-            MOST_LAYERS * bench.thinning
+            "1 in {} triangles drawn: it covers itself {} times",
+            bench.thinning, bench.layers
         )
     } else if bench.shown_map == bench.shown {
         away
@@ -80,7 +93,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
             bench.shown_map
         )
     };
-    style::heading(ui.painter(), bench, rect, "Map", &dropped);
+    style::heading(ui.painter(), bench, rect, right, "Map", &dropped);
     found
 }
 
@@ -134,6 +147,28 @@ fn rings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
     }
 }
 
+/// A cross wherever the boundary of the newest map meets itself.
+fn crossings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
+    let newest = bench.shown + 1 == bench.run.records.len();
+    let Some(map) = bench
+        .map()
+        .filter(|_| newest && !bench.crossings.is_empty())
+    else {
+        return;
+    };
+    for edges in bench.crossings.iter().take(MOST_CROSSES) {
+        let at = bench
+            .pan
+            .to_view(Vec2::from_array(meeting(edges, map)), size);
+        let at = rect.center() + vec2(at.x, -at.y);
+        for (width, ink) in [(4.5, bench.theme.ground), (1.8, VERMILION)] {
+            for arm in [vec2(4.5, 4.5), vec2(4.5, -4.5)] {
+                painter.line_segment([at - arm, at + arm], Stroke::new(width, style::colour(ink)));
+            }
+        }
+    }
+}
+
 /// The ramp with its ticks, the mark of clamped values, the hatch of inverted ones.
 fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     let (theme, text) = (bench.theme, bench.text);
@@ -143,7 +178,11 @@ fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     let bottom = rect.bottom() - 14.0 - 16.0 * text;
     let bar = Rect::from_min_max(pos2(left, bottom - bar_height), pos2(left + width, bottom));
     let swatch = Rect::from_min_size(pos2(bar.right(), bar.top()), vec2(16.0 * text, bar_height));
-    let caption = "stretch or squeeze, max(σ₁, 1/σ₂)";
+    let caption = if rect.width() > 260.0 * text {
+        "stretch or squeeze, max(σ₁, 1/σ₂)"
+    } else {
+        "stretch or squeeze"
+    };
     let ground = Rect::from_min_max(
         pos2(rect.left() + 8.0, bar.top() - 22.0 * text),
         pos2(
@@ -198,10 +237,38 @@ fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
             style::colour(theme.quiet),
         );
     }
-    inverted_key(painter, rect, bench);
 }
 
-fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+/// How often the boundary of the newest map meets itself.
+fn crossings_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
+    let newest = bench.shown + 1 == bench.run.records.len();
+    if !newest || bench.crossings.is_empty() {
+        return;
+    }
+    let words = match bench.crossings.len() {
+        1 => "boundary crosses itself once".to_owned(),
+        n => format!("boundary crosses itself {} times", whole(n)),
+    };
+    let at = pos2(rect.right() - 14.0, rect.top() + 10.0 + 19.0 * bench.text);
+    let font = style::regular(style::SMALL * bench.text);
+    let place = painter.text(
+        at,
+        Align2::RIGHT_TOP,
+        words,
+        font,
+        style::colour(bench.theme.warn),
+    );
+    let middle = pos2(place.left() - 9.0, place.center().y);
+    for arm in [vec2(3.5, 3.5), vec2(3.5, -3.5)] {
+        painter.line_segment(
+            [middle - arm, middle + arm],
+            Stroke::new(1.8, style::colour(VERMILION)),
+        );
+    }
+}
+
+/// How many are inverted, with their hatch; returns its left edge.
+fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) -> f32 {
     let (theme, text) = (bench.theme, bench.text);
     let reported = bench
         .record()
@@ -211,6 +278,7 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     } else {
         format!("{} inverted", whole(reported))
     };
+    crossings_key(painter, rect, bench);
     let ink = if reported == 0 {
         theme.quiet
     } else {
@@ -233,7 +301,7 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
         vec2(side, side),
     );
     if reported == 0 {
-        return;
+        return place.left() - 12.0;
     }
     painter.rect_filled(key, 0.0, Color32::from_rgb(255, 230, 209));
     let clip = painter.with_clip_rect(key);
@@ -254,4 +322,5 @@ fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
         Stroke::new(1.0, style::colour(outline)),
         egui::StrokeKind::Inside,
     );
+    key.left() - 12.0
 }

@@ -18,7 +18,7 @@ use web_sys::HtmlCanvasElement;
 
 use crate::history::Record;
 use crate::layout::View;
-use bench::{Bench, PlotHeight};
+use bench::Bench;
 
 /// The canvas of the page. All arrays are copied.
 #[wasm_bindgen]
@@ -116,6 +116,19 @@ impl Canvas {
         self.change(|bench| bench.facts = facts);
     }
 
+    /// Pairs of boundary edges that meet where they should not in the newest map: four vertices each.
+    #[wasm_bindgen(js_name = setCrossings)]
+    pub fn set_crossings(&self, vertices: &[u32]) {
+        self.change(|bench| {
+            let n = bench.problem.vertices;
+            let pairs = vertices.as_chunks::<4>().0.iter();
+            bench.crossings = pairs
+                .filter(|pair| pair.iter().all(|v| (*v as usize) < n))
+                .map(|&[a, b, c, d]| [[a, b], [c, d]])
+                .collect();
+        });
+    }
+
     /// Forgets the curves of earlier runs.
     #[wasm_bindgen(js_name = clearCurves)]
     pub fn clear_curves(&self) {
@@ -152,19 +165,13 @@ impl Canvas {
         self.change(|bench| bench.inspector = shown);
     }
 
-    /// Sets a switch: `wireframe`, `tinted`, `gap`, `seconds`.
-    pub fn set(&self, name: &str, on: bool) {
+    /// Turns a switch: `wireframe`, `tinted`, `gap`, `seconds`.
+    pub fn toggle(&self, name: &str) {
         self.change(|bench| match name {
-            "wireframe" => bench.wireframe = on,
-            "tinted" => bench.tinted = on,
-            "gap" => {
-                bench.plot_height = if on {
-                    PlotHeight::Gap
-                } else {
-                    PlotHeight::Values
-                }
-            }
-            "seconds" => bench.plot_seconds = on,
+            "wireframe" => bench.wireframe = !bench.wireframe,
+            "tinted" => bench.tinted = !bench.tinted,
+            "gap" => bench.plot_height = bench.plot_height.other(),
+            "seconds" => bench.plot_seconds = !bench.plot_seconds,
             _ => {}
         });
     }

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2
 use super::bench::{Bench, Event, PlotHeight};
 use super::style;
 use crate::colour::{CurveStyle, VERMILION, curve_style};
-use crate::history::{Record, Run};
+use crate::history::Record;
 use crate::scale::{LogAxis, linear_ticks, number, power_of_ten};
 use crate::words::{energy_caption, method_name};
 
@@ -40,9 +40,14 @@ impl Frame {
     fn energy(&self, record: &Record) -> Option<f64> {
         let value = match self.gap {
             None => record.energy,
-            Some(lowest) => ((record.energy - lowest) / lowest.abs().max(1e-300)).max(LEAST_GAP),
+            Some(lowest) => (record.energy - lowest) / lowest.abs().max(1e-300),
         };
-        value.is_finite().then_some(value)
+        let least = if self.gap.is_some() {
+            LEAST_GAP
+        } else {
+            f64::MIN_POSITIVE
+        };
+        (value.is_finite() && value >= least).then_some(value)
     }
 
     /// A curve of the records, at most one point a pixel (the worst of them), broken where undefined.
@@ -100,7 +105,6 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             theme.dark,
             0.75,
         );
-        end_label(&painter, &frame, run, bench);
     }
     let records = &bench.run.records;
     let mut ends: Vec<(f32, &str, Color32)> = Vec::new();
@@ -125,27 +129,23 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     let curves = frame.curve(records, |r| frame.energy(r));
     draw(&painter, &curves, own, 2.0, theme.dark, 1.0);
     if let Some(p) = curves.iter().rev().find_map(|piece| piece.last()) {
-        let name = if frame.gap.is_some() {
-            method_name(&bench.run.method)
-        } else {
-            "energy"
-        };
-        ends.push((
-            p.y,
-            name,
-            style::colour(if theme.dark { own.dark } else { own.light }),
-        ));
+        let ink = if theme.dark { own.dark } else { own.light };
+        ends.push((p.y, "energy", style::colour(ink)));
     }
-    if bench.earlier.is_empty() || frame.gap.is_none() {
+    if frame.gap.is_none() {
         labels(&painter, area, &mut ends, text);
+    } else {
+        name_ends(&painter, &frame, bench);
     }
     cursor(ui, rect, &frame, bench);
 }
 
 fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
-    let end = style::heading(ui.painter(), bench, rect, "Convergence", "");
+    let end = style::heading(ui.painter(), bench, rect, rect.right(), "Convergence", "");
     let gap = bench.plot_height == PlotHeight::Gap;
-    let vertical = if gap {
+    let vertical = if gap && bench.lowest_energy().is_none() {
+        "(E − lowest) / lowest, once nothing is inverted"
+    } else if gap {
         "(E − lowest) / lowest"
     } else {
         energy_caption(&bench.energy)
@@ -163,11 +163,7 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         "What the height is: the values, or how far above the lowest energy any run has reached here (E)",
     );
     if x.1 {
-        bench.plot_height = if gap {
-            PlotHeight::Values
-        } else {
-            PlotHeight::Gap
-        };
+        bench.plot_height = bench.plot_height.other();
     }
     let by = style::label(
         ui.painter(),
@@ -239,7 +235,7 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
         .flat_map(|run| run.records.iter().filter_map(|r| frame.energy(r)))
         .collect();
     if gap.is_none() {
-        frame.floor = 13.0 * bench.text;
+        frame.floor = 17.0 * bench.text;
         for record in &bench.run.records {
             values.extend([record.worst_distortion(), f64::from(record.inverted)]);
         }
@@ -360,29 +356,30 @@ fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
     }
 }
 
-fn end_label(painter: &egui::Painter, frame: &Frame, run: &Run, bench: &Bench) {
-    let Some(last) = run.records.last() else {
-        return;
-    };
-    let Some(y) = frame.energy(last).and_then(|v| frame.y(v)) else {
-        return;
-    };
-    let ink = curve_style(&run.method);
-    let ink = style::colour(if bench.theme.dark {
-        ink.dark
-    } else {
-        ink.light
-    });
-    let x = frame.x(last);
-    // In the plain plot every curve ends near the same energy: the name goes on the curve's way.
-    if frame.gap.is_some() {
-        painter.text(
-            pos2(x + 6.0, y),
-            Align2::LEFT_CENTER,
-            method_name(&run.method),
-            style::regular(style::SMALL * bench.text),
-            ink,
-        );
+/// Methods' names where their curves end (when only energies are plotted), none over another.
+fn name_ends(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
+    let mut taken: Vec<Rect> = Vec::new();
+    for run in [&bench.run].into_iter().chain(&bench.earlier) {
+        let end = run.records.iter().rev().find_map(|r| {
+            let y = frame.energy(r).and_then(|v| frame.y(v))?;
+            Some(pos2(frame.x(r) + 6.0, y))
+        });
+        let Some(at) = end else { continue };
+        let ink = curve_style(&run.method);
+        let ink = style::colour(if bench.theme.dark {
+            ink.dark
+        } else {
+            ink.light
+        });
+        let font = style::regular(style::SMALL * bench.text);
+        let galley = painter.layout_no_wrap(method_name(&run.method).to_owned(), font, ink);
+        let mut rect = Align2::LEFT_CENTER.anchor_size(at, galley.size());
+        while let Some(other) = taken.iter().find(|other| other.intersects(rect)) {
+            rect = rect.translate(vec2(0.0, other.top() - rect.bottom() - 1.0));
+        }
+        painter.rect_filled(rect, 2.0, style::colour(bench.theme.ground));
+        painter.galley(rect.min, galley, ink);
+        taken.push(rect);
     }
 }
 

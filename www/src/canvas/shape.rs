@@ -47,7 +47,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     } else {
         String::new()
     };
-    style::heading(ui.painter(), bench, rect, "Surface", &size);
+    style::heading(ui.painter(), bench, rect, rect.right(), "Surface", &size);
     let hint = if bench.orbit.zoom > 1.5 {
         "double-click to fit"
     } else {

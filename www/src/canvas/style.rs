@@ -104,7 +104,16 @@ pub fn label(
 }
 
 /// The heading of a view, top left; returns where it ends.
-pub fn heading(painter: &Painter, bench: &Bench, view: Rect, title: &str, rest: &str) -> Rect {
+///
+/// `rest` is left out where it would not fit before `right`.
+pub fn heading(
+    painter: &Painter,
+    bench: &Bench,
+    view: Rect,
+    right: f32,
+    title: &str,
+    rest: &str,
+) -> Rect {
     let at = view.min + egui::vec2(14.0, 10.0);
     let theme = bench.theme;
     let first = painter.text(
@@ -118,7 +127,7 @@ pub fn heading(painter: &Painter, bench: &Bench, view: Rect, title: &str, rest: 
         return first;
     }
     let after = Pos2::new(first.right() + 8.0, first.center().y);
-    let room = (view.right() - after.x - 10.0).max(0.0);
+    let room = (right - after.x - 10.0).max(0.0);
     let galley = painter.layout_no_wrap(
         rest.to_owned(),
         regular(SMALL * bench.text),

@@ -37,3 +37,12 @@ vec3 wires(vec3 colour, vec3 edge, float weight) {
     float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
     return mix(colour, u_outline, line * weight * smoothstep(3.0, 12.0, size));
 }
+
+// Hatched, with a dark outline wherever there is room for one.
+vec3 inverted(vec3 edge) {
+    vec3 width = fwidth(edge);
+    vec3 near = smoothstep(width * 0.5 * u_pixel, width * 1.3 * u_pixel, edge);
+    float line = 1.0 - min(near.x, min(near.y, near.z));
+    float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
+    return mix(hatch(), u_outline, line * smoothstep(2.0, 9.0, size));
+}

@@ -5,7 +5,7 @@ out vec4 colour;
 void main() {
     vec3 c;
     if (v_distortion < 0.0) {
-        c = hatch();
+        c = inverted(v_edge);
     } else {
         c = ramp(v_distortion);
         if (v_distortion > exp(u_end)) c = clamped(c);

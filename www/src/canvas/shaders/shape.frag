@@ -12,7 +12,9 @@ out vec4 colour;
 float checker(vec2 p) {
     vec2 w = max(abs(dFdx(p)) + abs(dFdy(p)), vec2(1e-4));
     vec2 i = (abs(fract((p - 0.5 * w) * 0.5) - 0.5) - abs(fract((p + 0.5 * w) * 0.5) - 0.5)) * 2.0 / w;
-    return 0.5 - 0.5 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0);
+    float checks = 0.5 - 0.5 * clamp(i.x, -1.0, 1.0) * clamp(i.y, -1.0, 1.0);
+    // Squares smaller than a pixel or so are an even grey, without moiré.
+    return mix(checks, 0.5, smoothstep(0.6, 1.4, max(w.x, w.y)));
 }
 
 void main() {
@@ -20,11 +22,9 @@ void main() {
     vec3 grey = mix(u_check_dark, u_check_light, check);
     vec3 c;
     if (v_distortion < 0.0) {
-        c = hatch();
+        c = inverted(v_edge);
     } else {
-        vec3 tint = ramp(v_distortion);
-        if (v_distortion > exp(u_end)) tint = clamped(tint);
-        c = mix(grey, tint * mix(0.80, 1.12, check), u_tint);
+        c = mix(grey, ramp(v_distortion) * mix(0.80, 1.12, check), u_tint);
     }
     vec3 n = normalize(v_normal);
     if (!gl_FrontFacing) n = -n;

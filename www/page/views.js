@@ -1,0 +1,90 @@
+// Theme, tabs, projector, switches: how the bench is looked at.
+
+import { notice } from './notice.js';
+
+const $ = (id) => document.getElementById(id);
+let board; // the canvas, once it is there
+
+/** The canvas follows from now on. */
+export function follow(canvas) {
+  board = canvas;
+  board.theme(isDark());
+  board.reducedMotion(still.matches);
+  arrange();
+}
+
+const still = matchMedia('(prefers-reduced-motion: reduce)');
+still.addEventListener('change', () => board?.reducedMotion(still.matches));
+
+const darkScheme = matchMedia('(prefers-color-scheme: dark)');
+const isDark = () => (document.documentElement.dataset.theme ?? (darkScheme.matches ? 'dark' : 'light')) === 'dark';
+darkScheme.addEventListener('change', () => board?.theme(isDark()));
+
+/** Light becomes dark, and says so in the address. */
+export function flipTheme() {
+  const theme = isDark() ? 'light' : 'dark';
+  document.documentElement.dataset.theme = theme;
+  const asked = new URLSearchParams(location.search);
+  asked.set('theme', theme);
+  history.replaceState(null, '', `?${asked}`);
+  board?.theme(theme === 'dark');
+}
+
+const narrow = matchMedia('(max-width: 719.98px)');
+let tab = 'map'; // the view a phone shows
+
+/** Lays out for the size of the window. */
+function arrange() {
+  board?.view(narrow.matches ? tab : 'all');
+  const wide = innerWidth >= 1000;
+  const box = $('invite').style;
+  // Over the middle of the map, a little above its middle.
+  const column = wide && !narrow.matches && !projecting() ? 292 : 0;
+  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * 0.75)`);
+  box.setProperty('--invite-y', narrow.matches ? '50%' : '34%');
+}
+
+/** Shows one view, on a phone. */
+function choose(view) {
+  tab = view;
+  for (const button of document.querySelectorAll('[role="tab"]')) {
+    const on = button.dataset.view === view;
+    button.setAttribute('aria-selected', String(on));
+    button.tabIndex = on ? 0 : -1;
+  }
+  arrange();
+}
+
+/** Views only, text at double size; or back. */
+export function project() {
+  const on = document.body.classList.toggle('projecting');
+  $('projector').setAttribute('aria-pressed', String(on));
+  board?.projector(on ? 1.9 : 1, !on);
+  arrange();
+  if (on) notice('Projector', 'P or Esc brings the controls back.', { plain: true });
+}
+
+/** Turns a switch of the canvas: `wireframe`, `tinted`, `gap`, `seconds`. */
+export function flip(name) {
+  board?.toggle(name);
+}
+
+/** Whether only the views are shown. */
+export const projecting = () => document.body.classList.contains('projecting');
+
+/** Connects the controls of the views. */
+export function connectViews() {
+  $('theme').addEventListener('click', flipTheme);
+  $('projector').addEventListener('click', project);
+  const tabs = [...document.querySelectorAll('[role="tab"]')];
+  for (const button of tabs) button.addEventListener('click', () => choose(button.dataset.view));
+  tabs[0].parentElement.addEventListener('keydown', (event) => {
+    const turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!turn) return;
+    const next = tabs[(tabs.findIndex((button) => button.dataset.view === tab) + turn + tabs.length) % tabs.length];
+    choose(next.dataset.view);
+    next.focus();
+  });
+  narrow.addEventListener('change', arrange);
+  addEventListener('resize', arrange);
+}
