@@ -1,6 +1,6 @@
 // Builds the package: Rust → wasm twice (single-thread, threads), TypeScript → JavaScript, all into pkg/.
 // Each part is built only when the contents of its sources have changed. `--force` builds all.
-import { existsSync, readFileSync, rmSync, statSync } from 'node:fs';
+import { existsSync, mkdirSync, readFileSync, renameSync, rmSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
@@ -37,17 +37,22 @@ async function buildOne(threads, force) {
   const wasm = join(root, folder, 'foldfree_bg.wasm');
   if (!force && isStamped(join('pkg', `.${name}.stamp`), sources) && existsSync(wasm)) return;
   const [env, pack] = [await wasmEnvironment({ threads }), await wasmPack()];
-  rmSync(join(root, folder), { recursive: true, force: true });
+  // Built beside its place, and moved when it is good.
+  const building = join('target', 'pkg', name);
+  rmSync(join(root, building), { recursive: true, force: true });
   const args = [
     'build', '.', '--release', '--target', 'web', '--mode', 'no-install', '--no-opt', '--no-pack',
-    '--out-dir', folder, '--out-name', 'foldfree', '--',
+    '--out-dir', building, '--out-name', 'foldfree', '--',
     ...buildStd, '--no-default-features', ...(threads ? ['--features', 'threads'] : []),
   ];
   await run(pack, args, {
     env, label: `building wasm (${name})`, estimate: '2 minutes', log: join(tools, 'logs', `wasm-${name}.log`),
   });
-  await optimise(wasm, { threads });
-  rmSync(join(root, folder, '.gitignore'), { force: true }); // wasm-pack's; it would keep npm from packing
+  await optimise(join(root, building, 'foldfree_bg.wasm'), { threads });
+  rmSync(join(root, building, '.gitignore'), { force: true }); // wasm-pack's; it would keep npm from packing
+  rmSync(join(root, folder), { recursive: true, force: true });
+  mkdirSync(join(root, 'pkg'), { recursive: true });
+  renameSync(join(root, building), join(root, folder));
   stamp(join('pkg', `.${name}.stamp`), sources);
   say(`  pkg/${name}: ${sizeOf(wasm)}`);
 }

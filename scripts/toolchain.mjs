@@ -82,7 +82,7 @@ async function debianRust() {
   // A folder with just this cargo and rustc, to put before any others on PATH.
   const shims = join(tools, 'debian-rust');
   mkdirSync(shims, { recursive: true });
-  for (const name of ['cargo', 'rustc']) {
+  for (const name of ['cargo', 'rustc', 'cargo-clippy', 'clippy-driver']) {
     rmSync(join(shims, name), { force: true });
     symlinkSync(`/usr/bin/${name}`, join(shims, name));
   }
@@ -115,6 +115,20 @@ export function wasmRust() {
     );
   })();
   return wasmRustFound;
+}
+
+/** The clippy that goes with that compiler. */
+export async function wasmClippy() {
+  const rust = await wasmRust();
+  if (rust.shims) {
+    if (existsSync('/usr/bin/cargo-clippy')) return;
+    if (await aptInstall(['rust-web-clippy'], "installing Debian's clippy", '20 seconds')) return;
+    throw new Unmet("Debian's clippy is needed: run `apt-get install rust-web-clippy` as root.");
+  }
+  const { RUSTUP_TOOLCHAIN: toolchain } = rust.env;
+  if (!(await ask('cargo', [`+${toolchain}`, 'clippy', '--version']))) {
+    throw new Unmet(`clippy is needed: run \`rustup component add clippy --toolchain ${toolchain}\`.`);
+  }
 }
 
 /** The version of a crate in Cargo.lock. */
@@ -180,8 +194,8 @@ function wasmFlags(threads) {
   return flags;
 }
 
-/** Arguments every wasm cargo call takes. */
-export const buildStd = ['-Z', 'build-std=std,panic_abort'];
+/** Arguments every wasm cargo call takes: std from its sources, small, and without backtraces. */
+export const buildStd = ['-Z', 'build-std=std,panic_abort', '-Z', 'build-std-features=optimize_for_size'];
 
 /**
  * The environment in which `cargo … --target wasm32-unknown-unknown` and wasm-pack build for wasm:
@@ -213,6 +227,9 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
     say(`wasm-pack: ${await wasmPack()}`);
     const { browser, driver } = await chromium();
     say(`chromium: ${browser}, ${driver}`);
-    if (ci) say(`cargo-deny: ${await cargoDeny()}`);
+    if (ci) {
+      say(`cargo-deny: ${await cargoDeny()}`);
+      await wasmClippy();
+    }
   });
 }

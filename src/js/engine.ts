@@ -1,7 +1,7 @@
 // The synchronous API over one instance of the wasm module. The worker and `foldfree/core` share it.
 import type * as Bindings from './single/foldfree.js';
 import { FoldfreeError, toFoldfreeError } from './error.js';
-import { fileBytes, isArrays, needFormat } from './input.js';
+import { cornerImages, fileBytes, isArrays, needFormat } from './input.js';
 import {
   dispose,
   type Certificate, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
@@ -183,9 +183,18 @@ export class Core {
     return guard(() => new CoreSolver(new this.#bindings.WasmParameterization(mesh.handle, rest), frames));
   }
 
-  /** Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`. */
-  check(mesh: CoreMesh, uv: Float64Array): Certificate {
+  /**
+   * Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`; left out, it is
+   * the texture coordinates `mesh` came with.
+   */
+  check(mesh: CoreMesh, uv?: Float64Array): Certificate {
+    if (uv === undefined) return this.checkCorners(mesh, cornerImages(mesh));
     return guard(() => this.#bindings.checkMap(mesh.handle, uv));
+  }
+
+  /** Checks a map with seams: the image of every corner of every triangle, m × 3 × 2. */
+  checkCorners(mesh: CoreMesh, corners: Float64Array): Certificate {
+    return guard(() => this.#bindings.checkCorners(mesh.handle, corners));
   }
 
   /** All options with the values they have when left out. */

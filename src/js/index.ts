@@ -1,7 +1,7 @@
 // The package's front door: everything runs in a worker, with threads where the page may have them.
 import { Client, type FrameListener, type LoadOptions } from './client.js';
 import { FoldfreeError } from './error.js';
-import { fileBytes, isArrays, needFormat } from './input.js';
+import { cornerImages, fileBytes, isArrays, needFormat } from './input.js';
 import {
   dispose,
   type Certificate, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
@@ -99,9 +99,13 @@ export class Foldfree {
     return new Solver(client, generation, solver, info, wait, signal);
   }
 
-  /** Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`. */
-  async check(mesh: Mesh, uv: Float64Array): Promise<Certificate> {
+  /**
+   * Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`; left out, it is
+   * the texture coordinates `mesh` came with.
+   */
+  async check(mesh: Mesh, uv?: Float64Array): Promise<Certificate> {
     const id = await mesh.inWorker();
+    if (uv === undefined) return this.#client.call('checkCorners', { mesh: id, corners: cornerImages(mesh) });
     return this.#client.call('check', { mesh: id, uv });
   }
 

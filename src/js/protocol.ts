@@ -1,7 +1,8 @@
 // What the client and the worker say to each other.
 import type { PlainError } from './error.js';
-import type { FramePrecision, MeshArrays, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolverInfo, Step, StepReport } from './types.js';
-import type { Certificate, MeshFormat, Texture } from './types.js';
+import type {
+  Certificate, FramePrecision, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolverInfo, Step, StepReport,
+} from './types.js';
 
 /** The calls a worker answers: arguments and result. */
 export interface Calls {
@@ -20,6 +21,7 @@ export interface Calls {
   exportObj: [{ solver: number }, Uint8Array];
   freeSolver: [{ solver: number }, undefined];
   check: [{ mesh: number; uv: Float64Array }, Certificate];
+  checkCorners: [{ mesh: number; corners: Float64Array }, Certificate];
   memory: [Record<string, never>, number];
 }
 
@@ -41,5 +43,3 @@ export type FromWorker =
   /** The wasm is there, the pool of threads starts: from here on the time-out counts. */
   | { starting: true }
   | { run: number; frame: Step; reports: StepReport[] };
-
-export type { Texture };

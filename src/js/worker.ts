@@ -174,6 +174,7 @@ function serve(port: Port): void {
       return undefined;
     },
     check: ({ mesh, uv }) => theCore().check(found(meshes, mesh, 'mesh'), uv),
+    checkCorners: ({ mesh, corners }) => theCore().checkCorners(found(meshes, mesh, 'mesh'), corners),
     memory: () => theCore().memoryBytes,
   };
 

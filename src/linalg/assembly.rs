@@ -21,7 +21,7 @@ pub struct SymmetricAssembly {
 
 impl SymmetricAssembly {
     /// The pattern of `triplets` (row, column), either triangle, on n×n. A contribution with
-    /// row < column is mirrored; both (i, j) and (j, i) must not be given for the same entry.
+    /// row < column is mirrored, so (i, j) and (j, i) add up in one entry: give each once.
     /// Entries of a row or column ≥ n are left out (fixed unknowns). The diagonal is always stored.
     pub fn new(n: usize, triplets: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let keep = |&(_, (i, j)): &(usize, (u32, u32))| (i as usize) < n && (j as usize) < n;

@@ -285,7 +285,8 @@ impl Cholesky {
         match columns {
             1 => columns_of_l.solve::<1>(x.as_chunks_mut().0, &mut self.to_top),
             2 => columns_of_l.solve::<2>(x.as_chunks_mut().0, &mut self.to_top),
-            _ => columns_of_l.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
+            3 => columns_of_l.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
+            _ => unreachable!("one to three right-hand sides, not {columns}"),
         }
     }
 }

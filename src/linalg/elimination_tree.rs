@@ -11,7 +11,7 @@ use nalgebra_sparse::CscMatrix;
 /// No parent: a root.
 pub const NONE: u32 = u32::MAX;
 
-/// Parents in the elimination tree and the number of entries of each column of L.
+/// Parents in the elimination tree.
 #[derive(Debug, Clone)]
 pub struct EliminationTree {
     /// Parent of each column, `u32::MAX` for roots.
@@ -62,6 +62,7 @@ impl EliminationTree {
     /// An equivalent order in which each of a few subtrees is contiguous, the rest of the tree (its
     /// top) at the end: `order[k]` is the column that becomes the k-th. Also where each part ends.
     pub fn split(&self, upper: &CscMatrix<f64>, parts: usize) -> (Vec<u32>, Vec<usize>) {
+        let parts = parts.max(1);
         let n = self.parent.len();
         // work of a subtree: entries of L in its columns
         let mut work = vec![1u64; n];

@@ -68,6 +68,9 @@ where
             types: PhantomData,
         };
         this.evaluate();
+        if max_iterations == 0 {
+            this.report.status = Status::MaxIterations;
+        }
         Ok(this)
     }
 

@@ -46,7 +46,8 @@ impl BuildError {
     }
 }
 
-/// Why a step failed. The solver keeps its last good iterate.
+/// Why a step failed. `positions()` keep the last finite iterate; the solver itself is not to be
+/// stepped any further.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
 #[serde(untagged)]
 #[non_exhaustive]

@@ -45,7 +45,7 @@ impl Lbfgs {
     pub fn new(window: usize) -> Self {
         let scalars = || Vec::with_capacity(window + 1);
         Self {
-            window,
+            window: window.max(1),
             pairs: Vec::with_capacity(window),
             spare: Vec::with_capacity(window),
             along_gradient: scalars(),
@@ -150,6 +150,11 @@ impl Lbfgs {
     /// objective before and after it. A pair without positive curvature (s·y ≤ 0 up to rounding) is
     /// not kept.
     pub fn push(&mut self, step: &[f64], gradient_before: &[f64], gradient_after: &[f64]) {
+        debug_assert_eq!(
+            self.along_direction.len(),
+            self.pairs.len(),
+            "push follows direction"
+        );
         // s_i·g after the step, for the old pairs and the new
         dots(
             self.pairs

@@ -5,7 +5,6 @@ use super::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use crate::Error;
 use crate::certificate::Certificate;
 use crate::embedding::{DirectMap, harmonic, lscm, tutte};
-use crate::energy::total::total;
 use crate::energy::{Arap, Energy, SymmetricDirichlet};
 use crate::geometry::{RestShape, surface_area};
 use crate::local_global::ArapLocalGlobal;
@@ -246,20 +245,8 @@ fn admm<E: Energy<Plane>>(
     energy: E,
     options: &ParameterizationOptions,
 ) -> Result<Box<dyn Solver>, BuildError> {
-    // A start that folds over and over says nothing of the stiffness near the optimum; weights taken
-    // from it only grow. Such starts keep the rest weights for as long as the paper's quasi-static
-    // problems do (§6.1: k_rw = 50).
-    let inverted = total::<Plane, E>(energy, problem.rest, problem.start).inverted;
-    let delay = if 100 * inverted > problem.rest.len() {
-        50
-    } else {
-        1
-    };
-    let reweighting =
-        matches!(options.method, Method::Wrapd | Method::WAdmm).then_some(Reweighting {
-            delay,
-            ..Reweighting::PARAMETERIZATION
-        });
+    let reweighting = matches!(options.method, Method::Wrapd | Method::WAdmm)
+        .then_some(Reweighting::PARAMETERIZATION);
     let settings = WrapdOptions {
         reweighting,
         tolerance: options.tolerance,

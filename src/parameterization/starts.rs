@@ -37,8 +37,10 @@ pub(super) fn start(
 ) -> Result<(Vec<DVec2>, Start), BuildError> {
     let map = match kind {
         Start::Automatic => {
-            let map = harmonic(mesh, rest, boundary)?;
-            if flips(mesh, &map) == 0 {
+            // needles can make the cotangent matrix indefinite in floating point
+            if let Ok(map) = harmonic(mesh, rest, boundary)
+                && flips(mesh, &map) == 0
+            {
                 return Ok((map, Start::Harmonic));
             }
             return Ok((tutte(mesh, rest, boundary)?, Start::Tutte));

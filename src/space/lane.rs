@@ -3,7 +3,8 @@
 //! Every per-element formula of the crate is written once, generic over [`Scalar`] (arithmetic only:
 //! also dual numbers, for the derivative tests) or [`Lane`] (with comparisons: `f64` or a register).
 //! Registers come from `pulp`, which picks AVX-512, AVX2 or simd128 at run time; none of the
-//! operations contracts to a fused multiply-add, so that every width gives the same bits.
+//! operations contracts to a fused multiply-add, so that a kernel gives the same bits at every width
+//! (the dense kernels of faer's Cholesky do use it where the machine has it).
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 use pulp::{Simd, WithSimd};

@@ -20,19 +20,18 @@ pub struct Plane;
 /// Below this modulus (absolute; far below any meaningful stretch) a direction is not defined.
 const TINY: f64 = 1e-150;
 
-/// Modulus and direction of the complex number (re, im); the direction of 0 is (1, 0).
+/// Modulus, its inverse and the direction of the complex number (re, im); the direction of 0 is (1, 0),
+/// its inverse modulus 0.
 #[inline(always)]
-fn polar_form<L: Lane>(re: L, im: L) -> (L, [L; 2]) {
+fn polar_form<L: Lane>(re: L, im: L) -> (L, L, [L; 2]) {
     let modulus = (re * re + im * im).sqrt();
     let vanishes = modulus.lt(modulus.lift(TINY));
-    let one = modulus.lift(1.0);
-    let inverse = modulus.select(vanishes, one, modulus).recip();
+    let (zero, one) = (modulus.lift(0.0), modulus.lift(1.0));
+    let inverse = modulus.select(vanishes, zero, modulus.recip());
     (
         modulus,
-        [
-            modulus.select(vanishes, one, re * inverse),
-            modulus.select(vanishes, modulus.lift(0.0), im * inverse),
-        ],
+        inverse,
+        [modulus.select(vanishes, one, re * inverse), im * inverse],
     )
 }
 
@@ -72,8 +71,8 @@ fn conj_mul<L: Lane>(x: [L; 2], y: [L; 2]) -> [L; 2] {
 /// The polar decomposition of a 2×2 matrix.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanePolar<T> {
-    /// |α| = (σ₁+σ₂)/2.
-    modulus: T,
+    /// 1/|α| = 2/(σ₁+σ₂), 0 where the rotation is not defined.
+    inverse_modulus: T,
     /// The rotation as a unit complex number.
     rotation: [T; 2],
     /// ūβ.
@@ -102,12 +101,12 @@ impl Space for Plane {
     #[inline(always)]
     fn polar<L: Lane>(f: [L; 4]) -> ([L; 3], PlanePolar<L>) {
         let (alpha, beta) = split(f);
-        let (modulus, rotation) = polar_form(alpha[0], alpha[1]);
+        let (modulus, inverse_modulus, rotation) = polar_form(alpha[0], alpha[1]);
         let beta = conj_mul(rotation, beta);
         (
             [modulus, beta[0], beta[1]],
             PlanePolar {
-                modulus,
+                inverse_modulus,
                 rotation,
                 beta,
             },
@@ -119,10 +118,7 @@ impl Space for Plane {
     #[inline(always)]
     fn stretch_residual<L: Lane>(f: [L; 4], polar: PlanePolar<L>, p: [L; 3]) -> [L; 4] {
         let twist = polar.beta[1] * p[1] - polar.beta[0] * p[2];
-        let vanishes = polar.modulus.lt(polar.modulus.lift(TINY));
-        let one = twist.lift(1.0);
-        let divisor = twist.select(vanishes, one, polar.modulus);
-        let twist = twist.select(vanishes, twist.lift(0.0), twist / divisor);
+        let twist = twist * polar.inverse_modulus;
         let alpha = mul(polar.rotation, [p[0], twist]);
         let beta = mul(polar.rotation, [p[1], p[2]]);
         let target = join(alpha, beta);
@@ -135,7 +131,7 @@ impl Space for Plane {
 
     #[inline(always)]
     fn eigen<L: Lane>([t, c, s]: [L; 3]) -> ([L; 2], [L; 2]) {
-        let (radius, direction) = polar_form(c, s);
+        let (radius, _, direction) = polar_form(c, s);
         ([t + radius, t - radius], direction)
     }
 
@@ -153,8 +149,8 @@ impl Space for Plane {
     #[inline(always)]
     fn svd<L: Lane>(f: [L; 4]) -> ([L; 2], PlaneSvd<L>) {
         let (alpha, beta) = split(f);
-        let (q, alpha) = polar_form(alpha[0], alpha[1]);
-        let (r, beta) = polar_form(beta[0], beta[1]);
+        let (q, _, alpha) = polar_form(alpha[0], alpha[1]);
+        let (r, _, beta) = polar_form(beta[0], beta[1]);
         ([q + r, q - r], PlaneSvd { alpha, beta })
     }
 

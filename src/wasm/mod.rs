@@ -13,7 +13,7 @@ mod parameterization;
 mod report;
 
 pub use mesh::{WasmMesh, shapes};
-pub use parameterization::{WasmParameterization, check_map};
+pub use parameterization::{WasmParameterization, check_corners, check_map};
 #[cfg(feature = "threads")]
 pub use wasm_bindgen_rayon::init_thread_pool;
 

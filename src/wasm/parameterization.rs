@@ -4,9 +4,9 @@ use super::error::{Fallible, invalid_argument, thrown};
 use super::mesh::{WasmMesh, flat2, flat3};
 use super::options::parameterization_options;
 use super::report::StepReport;
-use crate::certificate::Certificate;
-use crate::mesh::SurfaceMesh;
+use crate::certificate::{Certificate, CornerMap};
 use crate::mesh::io::{self, CornerTexture};
+use crate::mesh::{SurfaceMesh, prepare};
 use crate::parameterization::Parameterization;
 use glam::DVec2;
 use js_sys::{Float32Array, Float64Array, Uint32Array};
@@ -162,7 +162,33 @@ pub fn check_map(mesh: &WasmMesh, uv: &[f64]) -> Fallible<JsValue> {
         ));
     }
     let points: Vec<DVec2> = points.iter().copied().map(DVec2::from_array).collect();
-    to_js(&Certificate::of_map(mesh.mesh(), &points))
+    to_js(&Certificate::try_of_map(mesh.mesh(), &points).map_err(thrown)?)
+}
+
+/// Checks a map with seams: `corners` has the image of every corner of every triangle (m × 3 × 2), as texture
+/// coordinates do. Triangles are turned to agree with their neighbours first.
+#[wasm_bindgen(js_name = checkCorners, unchecked_return_type = "Certificate")]
+pub fn check_corners(mesh: &WasmMesh, corners: &[f64]) -> Fallible<JsValue> {
+    let triangles = mesh.mesh().simplices.len();
+    let (images, _) = corners.as_chunks::<6>();
+    if corners.len() != 6 * triangles {
+        let what = format!(
+            "the length is {}, expected {}",
+            corners.len(),
+            6 * triangles
+        );
+        return Err(invalid_argument("corners", &what));
+    }
+    let images: Vec<[DVec2; 3]> = images
+        .iter()
+        .map(|&[a, b, c, d, e, f]| [DVec2::new(a, b), DVec2::new(c, d), DVec2::new(e, f)])
+        .collect();
+    let mut map = CornerMap::new(mesh.mesh(), &images);
+    // What else may be wrong with the surface is for the certificate to say.
+    if let Ok(prepared) = prepare(&map.mesh) {
+        map.mesh = prepared.mesh;
+    }
+    to_js(&Certificate::try_of_map(&map.mesh, &map.uv).map_err(thrown)?)
 }
 
 fn to_js(value: &impl serde::Serialize) -> Fallible<JsValue> {

@@ -84,8 +84,8 @@ pub struct BlockSums {
     pub smallest: f64,
     /// Largest singular value of F.
     pub largest: f64,
-    /// max over elements of (23)'s ratio.
-    pub ratio: f64,
+    /// Does any weight differ from its candidate by more than the threshold (23)?
+    pub reweight: bool,
     /// Most prox iterations.
     pub prox_iterations: u32,
 }

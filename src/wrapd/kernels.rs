@@ -18,6 +18,8 @@ pub enum Pass {
     Local {
         /// Least and most candidate stiffness.
         clamp: [f64; 2],
+        /// γ of (23).
+        threshold: f64,
         /// Set Z and U from F first.
         reset: bool,
     },
@@ -159,7 +161,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> WithSimd for Kernel<'_, S, C, E> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) -> BlockSums {
         match self.pass {
-            Pass::Local { clamp, reset } => self.local(simd, clamp, reset),
+            Pass::Local {
+                clamp,
+                threshold,
+                reset,
+            } => self.local(simd, clamp, threshold, reset),
             Pass::Forces => self.forces::<V, false>(simd),
             Pass::Last => self.forces::<V, true>(simd),
         }
@@ -168,7 +174,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> WithSimd for Kernel<'_, S, C, E> {
 
 impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
     #[inline(always)]
-    fn local<V: Simd>(self, simd: V, clamp: [f64; 2], reset: bool) -> BlockSums {
+    fn local<V: Simd>(self, simd: V, clamp: [f64; 2], threshold: f64, reset: bool) -> BlockSums {
         let Self {
             block,
             forces,
@@ -177,7 +183,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         } = self;
         let mut change = [0.0; BLOCK];
         let mut prox_iterations = 0;
-        let mut ratio = Pack::splat(simd, 1.0);
+        let mut reweight = false;
+        let threshold = Pack::splat(simd, threshold);
         let least = Pack::splat(simd, clamp[0]);
         let most = Pack::splat(simd, clamp[1]);
         for at in packs::<V>() {
@@ -232,7 +239,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             (area * (l1 - l0)).store(&mut change[at..][..Pack::<V>::WIDTH]);
 
             let stiff = energy.effective_stiffness(sigma).max(least).min(most);
-            ratio = ratio.max(stiff / k).max(k / stiff);
+            // (23): stiff/k ≥ γ or k/stiff ≥ γ
+            let off = (threshold * stiff.min(k)).lt(stiff.max(k));
+            reweight |= stiff.any(off);
             let p = z.zip(
                 dual,
                 #[inline(always)]
@@ -251,7 +260,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         BlockSums {
             lagrangian_change: ordered_sum(change[..n].iter().copied()),
             z_energy: ordered_sum((0..n).map(|e| block.measure[0][e] * block.z_density[0][e])),
-            ratio: horizontal_max(ratio),
+            reweight,
             prox_iterations,
             ..Default::default()
         }
@@ -353,11 +362,4 @@ fn ordered_sum(values: impl Iterator<Item = f64>) -> f64 {
     }
     let [a, b, c, d, e, f, g, h] = sums;
     ((a + e) + (c + g)) + ((b + f) + (d + h))
-}
-
-#[inline(always)]
-fn horizontal_max<V: Simd>(pack: Pack<V>) -> f64 {
-    let mut lanes = [f64::NEG_INFINITY; 8];
-    pack.store(&mut lanes[..Pack::<V>::WIDTH]);
-    lanes.into_iter().fold(f64::NEG_INFINITY, f64::max)
 }

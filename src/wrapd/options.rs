@@ -15,8 +15,12 @@ pub struct Reweighting {
     pub growth: f64,
     /// Cap of β_max (24b).
     pub cap: f64,
-    /// Iterations that keep the rest weights before reweighting begins.
+    /// Iterations that keep the rest weights before reweighting begins (§6.2: the first).
     pub delay: usize,
+    /// The same for a start of which more than 1 % of the elements are inverted. Such a start says
+    /// nothing of the stiffness near the optimum, and weights taken from it only grow; the paper's
+    /// quasi-static problems wait as long (§6.1: k_rw = 50).
+    pub delay_folded: usize,
 }
 
 impl Reweighting {
@@ -28,6 +32,7 @@ impl Reweighting {
         growth: 1.5,
         cap: 1e9,
         delay: 1,
+        delay_folded: 50,
     };
 
     /// β_max(k) of (24b), k counted so that the first reweighting iteration of a start without delay is

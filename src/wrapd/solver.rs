@@ -51,6 +51,8 @@ pub struct Wrapd<S: Space, C, E> {
     factor: Cholesky,
     history: Lbfgs,
     report: StepReport,
+    /// Iterations with the rest weights, for this start.
+    delay: usize,
     /// No flips at the previous iterate?
     was_injective: bool,
     started: Option<Instant>,
@@ -112,6 +114,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             factor,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            delay: 0,
             was_injective: false,
             started: None,
             types: PhantomData,
@@ -124,6 +127,13 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             this.report.energy = f64::INFINITY;
         }
         this.was_injective = this.report.inverted == 0;
+        if let Some(r) = options.reweighting {
+            let folded = 100 * this.report.inverted > rest.len();
+            this.delay = if folded { r.delay_folded } else { r.delay };
+        }
+        if options.max_iterations == 0 {
+            this.report.status = Status::MaxIterations;
+        }
         Ok(this)
     }
 
@@ -148,7 +158,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         );
         let mut total = BlockSums {
             smallest: f64::INFINITY,
-            ratio: 1.0,
             ..Default::default()
         };
         for s in self.blocks.iter().map(|b| &b.sums) {
@@ -158,7 +167,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             total.inverted += s.inverted;
             total.smallest = total.smallest.min(s.smallest);
             total.largest = total.largest.max(s.largest);
-            total.ratio = total.ratio.max(s.ratio);
+            total.reweight |= s.reweight;
             total.prox_iterations = total.prox_iterations.max(s.prox_iterations);
         }
         total
@@ -223,8 +232,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 
     /// The global step: L-BFGS on (11) until (17). Returns its iterations and the final evaluation.
-    fn global_step(&mut self, lagrangian_change: f64) -> (usize, BlockSums) {
-        let bound = S::KAPPA * lagrangian_change.abs();
+    fn global_step(&mut self, local: &BlockSums) -> (usize, BlockSums) {
+        // below the rounding error of the Lagrangian there is nothing to be gained
+        let rounding = f64::EPSILON * local.z_energy.abs();
+        let bound = (S::KAPPA * local.lagrangian_change.abs()).max(rounding);
         self.gather(Forces::Coupling);
         self.history.new_objective();
         let mut count = 0;
@@ -289,12 +300,20 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
         let clock = Instant::now();
         let clamp = match self.options.reweighting {
-            Some(r) if k >= r.delay => [r.least, r.most_at(k + 1 - r.delay)],
+            Some(r) if k >= self.delay => [r.least, r.most_at(k + 1 - self.delay)],
             _ => [1.0, 1.0],
         }
         .map(|beta| beta * E::REST_STIFFNESS);
         let reset = k == 0 || (k == 1 && self.options.restart_duals);
-        let local = self.pass(Pass::Local { clamp, reset });
+        let threshold = self
+            .options
+            .reweighting
+            .map_or(f64::INFINITY, |r| r.threshold);
+        let local = self.pass(Pass::Local {
+            clamp,
+            threshold,
+            reset,
+        });
         let local_phase = Phase {
             kind: PhaseKind::Local,
             count: local.prox_iterations,
@@ -302,7 +321,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         };
 
         let clock = Instant::now();
-        let (count, mut sums) = self.global_step(local.lagrangian_change);
+        let (count, mut sums) = self.global_step(&local);
         let global_phase = Phase {
             kind: PhaseKind::Global,
             count: count as u32,
@@ -310,10 +329,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         };
 
         let clock = Instant::now();
-        let reweighted = self
-            .options
-            .reweighting
-            .is_some_and(|r| local.ratio >= r.threshold);
+        let reweighted = local.reweight;
         if reweighted {
             self.reweight(k + 1)?;
         }
