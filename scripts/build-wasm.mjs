@@ -14,6 +14,9 @@ const WASM_FEATURES = [
   'bulk-memory', 'mutable-globals', 'nontrapping-float-to-int', 'reference-types', 'sign-ext', 'simd', 'multivalue',
 ];
 
+// faer's dense kernels are explicit SIMD: optimising them for size costs the factorisation nothing.
+const SMALL = ['gemm-f64', 'gemm-common'].flatMap((name) => ['--config', `profile.release.package.${name}.opt-level="s"`]);
+
 /** Runs a program of an npm package with this Node. */
 export function npmTool(path, args, options) {
   return run(process.execPath, [join(root, 'node_modules', path), ...args], options);
@@ -43,7 +46,7 @@ async function buildOne(threads, force) {
   const args = [
     'build', '.', '--release', '--target', 'web', '--mode', 'no-install', '--no-opt', '--no-pack',
     '--out-dir', building, '--out-name', 'foldfree', '--',
-    ...buildStd, '--no-default-features', ...(threads ? ['--features', 'threads'] : []),
+    ...buildStd, ...SMALL, '--no-default-features', ...(threads ? ['--features', 'threads'] : []),
   ];
   await run(pack, args, {
     env, label: `building wasm (${name})`, estimate: '2 minutes', log: join(tools, 'logs', `wasm-${name}.log`),

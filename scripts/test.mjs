@@ -46,11 +46,13 @@ async function wasm(threads) {
   Object.assign(env, {
     CHROMEDRIVER: driver,
     CHROME: browser,
-    CARGO_PROFILE_DEV_OPT_LEVEL: '2', // the release profile, with its link-time optimisation, does not link tests
-    CARGO_PROFILE_DEV_DEBUG: '0',
+    // The release profile, whose build scripts and macros are there already; tests do not link with fat LTO.
+    CARGO_PROFILE_RELEASE_LTO: 'off',
+    CARGO_PROFILE_RELEASE_DEBUG_ASSERTIONS: 'true',
+    CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
     WASM_BINDGEN_TEST_TIMEOUT: '300',
   });
-  const args = ['test', '--mode', 'no-install', '--headless', '--chrome', '--chromedriver', driver, '--', ...buildStd];
+  const args = ['test', '--release', '--mode', 'no-install', '--headless', '--chrome', '--chromedriver', driver, '--', ...buildStd];
   args.push('--no-default-features', ...(threads ? ['--features', 'threads'] : []));
   args.push('--test', threads ? 'wasm_threads' : 'wasm_single');
   const { output } = await run(pack, args, {
