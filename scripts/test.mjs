@@ -27,8 +27,6 @@ async function rust() {
   const nextest = (await ask('cargo', ['nextest', '--version'])) !== undefined;
   const args = nextest ? ['nextest', 'run', '--no-fail-fast'] : ['test', '--no-fail-fast', '--lib', '--bins', '--tests'];
   const env = { ...process.env, CARGO_TERM_COLOR: 'never' };
-  // The tests measure and compare real solves: optimised, but with debug assertions and overflow checks.
-  env.CARGO_PROFILE_DEV_OPT_LEVEL ??= '2';
   const { output } = await run('cargo', [...args, '--workspace', '--features', 'foldfree/cli'], {
     label: 'native tests', estimate: '4 minutes', env, echo: true, check: false, log: log('rust'),
   });
