@@ -4,10 +4,9 @@ use crate::energy::SymmetricDirichlet;
 use crate::energy::total::{distortion, total};
 use crate::geometry::RestShape;
 use crate::optim::{
-    Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
+    Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport, Stopwatch,
 };
 use crate::space::Plane;
-use web_time::Instant;
 
 /// A map that was found by one linear solve: the start, then the map. Its reports give the symmetric
 /// Dirichlet energy.
@@ -51,12 +50,12 @@ impl Solver for DirectMap {
     fn step(&mut self) -> Result<StepReport, SolveError> {
         if self.report.status == Status::Running {
             self.x.copy_from_slice(&self.map);
-            let clock = Instant::now();
+            let clock = Stopwatch::start();
             self.evaluate();
             self.report.iteration = 1;
             self.report.status = Status::Converged(Criterion::Direct);
             self.report.seconds = self.seconds;
-            let evaluate = clock.elapsed().as_secs_f64() * 1e3;
+            let evaluate = clock.milliseconds();
             self.report.phases = [
                 (PhaseKind::Global, self.seconds * 1e3),
                 (PhaseKind::Evaluate, evaluate),

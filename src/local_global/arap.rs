@@ -11,11 +11,11 @@ use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::{
     BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
+    Stopwatch,
 };
 use crate::space::{Components, Space};
 use crate::wrapd::{Elimination, Problem};
 use core::marker::PhantomData;
-use web_time::Instant;
 
 /// ARAP local/global.
 pub struct ArapLocalGlobal<S> {
@@ -28,7 +28,7 @@ pub struct ArapLocalGlobal<S> {
     report: StepReport,
     tolerance: f64,
     max_iterations: usize,
-    started: Option<Instant>,
+    started: Option<Stopwatch>,
     types: PhantomData<S>,
 }
 
@@ -97,9 +97,9 @@ where
     Arap: Energy<S>,
 {
     fn step(&mut self) -> Result<StepReport, SolveError> {
-        let started = *self.started.get_or_insert_with(Instant::now);
+        let started = *self.started.get_or_insert_with(Stopwatch::start);
         let before = self.report.energy;
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let identity = S::from_eigen(
             S::Sigma::from_fn(|_| 1.0),
             S::eigen(S::Symmetric::from_fn(|_| 0.0)).1,
@@ -117,9 +117,9 @@ where
                 &mut self.force,
             );
         }
-        let local = clock.elapsed().as_secs_f64() * 1e3;
+        let local = clock.milliseconds();
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let Elimination { slot, free, .. } = &self.elimination;
         let free_of = |slot: u32| (slot as usize) < *free;
         for (v, &s) in slot.iter().enumerate().filter(|&(_, &s)| free_of(s)) {
@@ -132,9 +132,9 @@ where
                 self.x[v * S::DIM + i] -= self.step[s as usize * S::DIM + i];
             }
         }
-        let global = clock.elapsed().as_secs_f64() * 1e3;
+        let global = clock.milliseconds();
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         self.evaluate();
         self.report.iteration += 1;
         let iteration = self.report.iteration;
@@ -152,8 +152,8 @@ where
         } else {
             Status::Running
         };
-        let evaluate = clock.elapsed().as_secs_f64() * 1e3;
-        self.report.seconds = started.elapsed().as_secs_f64();
+        let evaluate = clock.milliseconds();
+        self.report.seconds = started.seconds();
         self.report.phases.clear();
         self.report.phases.extend(
             [

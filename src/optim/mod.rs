@@ -3,9 +3,11 @@
 mod error;
 pub mod lbfgs;
 mod solver;
+mod stopwatch;
 pub mod vectors;
 
 pub use error::{BuildError, SolveError};
 pub use solver::{
     CancelToken, Criterion, Inspection, Observer, Phase, PhaseKind, Solver, Status, StepReport, run,
 };
+pub use stopwatch::Stopwatch;

@@ -10,11 +10,10 @@ use crate::geometry::{RestShape, surface_area};
 use crate::local_global::ArapLocalGlobal;
 use crate::mesh::cut::cut_to_disk;
 use crate::mesh::{MeshError, Prepared, SurfaceMesh, Topology, prepare};
-use crate::optim::{BuildError, Solver, StepReport};
+use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
 use crate::space::Plane;
 use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec2;
-use web_time::Instant;
 
 /// A flattening in progress.
 pub struct Parameterization {
@@ -114,7 +113,7 @@ impl Parameterization {
     /// [`MeshError`] for a mesh that cannot be flattened, [`BuildError`] for options out of range or a
     /// problem too large for the memory.
     pub fn new(mesh: &SurfaceMesh, options: &ParameterizationOptions) -> Result<Self, Error> {
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         options.validate()?;
         let Disk {
             mesh,
@@ -162,13 +161,13 @@ impl Parameterization {
                 options.max_iterations,
             )?),
             Method::Lscm | Method::Harmonic | Method::Tutte => {
-                let clock = Instant::now();
+                let clock = Stopwatch::start();
                 let map = match options.method {
                     Method::Lscm => lscm(&mesh, &rest, boundary)?,
                     Method::Harmonic => harmonic(&mesh, &rest, boundary)?,
                     _ => tutte(&mesh, &rest, boundary)?,
                 };
-                let seconds = clock.elapsed().as_secs_f64();
+                let seconds = clock.seconds();
                 Box::new(DirectMap::new(rest, positions, interleave(&map), seconds))
             }
         };
@@ -179,7 +178,7 @@ impl Parameterization {
             notes,
             scale,
             start_kind,
-            setup_seconds: clock.elapsed().as_secs_f64(),
+            setup_seconds: clock.seconds(),
             solver,
         })
     }

@@ -11,11 +11,11 @@ use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
     BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
+    Stopwatch,
 };
 use crate::parallel;
 use crate::space::{Space, dispatch};
 use core::marker::PhantomData;
-use web_time::Instant;
 
 /// Which corner forces to add up.
 #[derive(Clone, Copy)]
@@ -55,12 +55,8 @@ pub struct Wrapd<S: Space, C, E> {
     delay: usize,
     /// No flips at the previous iterate?
     was_injective: bool,
-    started: Option<Instant>,
+    started: Option<Stopwatch>,
     types: PhantomData<(S, C)>,
-}
-
-fn milliseconds(since: Instant) -> f64 {
-    since.elapsed().as_secs_f64() * 1e3
 }
 
 impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
@@ -294,11 +290,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 
     fn iterate(&mut self) -> Result<(), SolveError> {
-        let started = *self.started.get_or_insert_with(Instant::now);
+        let started = *self.started.get_or_insert_with(Stopwatch::start);
         let k = self.report.iteration;
         let before = self.report.energy;
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let clamp = match self.options.reweighting {
             Some(r) if k >= self.delay => [r.least, r.most_at(k + 1 - self.delay)],
             _ => [1.0, 1.0],
@@ -317,18 +313,18 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         let local_phase = Phase {
             kind: PhaseKind::Local,
             count: local.prox_iterations,
-            milliseconds: milliseconds(clock),
+            milliseconds: clock.milliseconds(),
         };
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let (count, mut sums) = self.global_step(&local);
         let global_phase = Phase {
             kind: PhaseKind::Global,
             count: count as u32,
-            milliseconds: milliseconds(clock),
+            milliseconds: clock.milliseconds(),
         };
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let reweighted = local.reweight;
         if reweighted {
             self.reweight(k + 1)?;
@@ -336,10 +332,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         let reweight_phase = Phase {
             kind: PhaseKind::Reweight,
             count: u32::from(reweighted),
-            milliseconds: milliseconds(clock),
+            milliseconds: clock.milliseconds(),
         };
 
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         sums.z_energy = local.z_energy;
         if let Some(slot) = self.x.iter().position(|x| !x.is_finite()) {
             let vertex = self
@@ -375,11 +371,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 Status::Running
             };
         self.was_injective = injective;
-        self.report.seconds = started.elapsed().as_secs_f64();
+        self.report.seconds = started.seconds();
         let evaluate_phase = Phase {
             kind: PhaseKind::Evaluate,
             count: 1,
-            milliseconds: milliseconds(clock),
+            milliseconds: clock.milliseconds(),
         };
         self.report.phases.clear();
         self.report

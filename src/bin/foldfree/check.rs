@@ -6,7 +6,7 @@ use crate::report::CheckReport;
 use crate::{Outcome, files, say};
 use foldfree::certificate::Certificate;
 use foldfree::mesh::prepare;
-use web_time::Instant;
+use foldfree::optim::Stopwatch;
 
 /// Reads the map, examines it and says what was found.
 pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
@@ -21,10 +21,10 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
         map.mesh = prepared.mesh;
         notes = prepared.notes;
     }
-    let clock = Instant::now();
+    let clock = Stopwatch::start();
     let certificate = Certificate::try_of_map(&map.mesh, &map.uv)
         .map_err(|error| Failure::of_file(&arguments.map, error))?;
-    let certificate_seconds = clock.elapsed().as_secs_f64();
+    let certificate_seconds = clock.seconds();
     if !arguments.quiet {
         notes.iter().for_each(|note| say(note));
         say(&certificate.summary());

@@ -8,11 +8,11 @@ use crate::report::{self, Iteration, ParameterizeReport};
 use crate::{Outcome, files, say};
 use foldfree::mesh::SurfaceMesh;
 use foldfree::mesh::io::{CornerTexture, Format, write_obj};
+use foldfree::optim::Stopwatch;
 use foldfree::optim::{CancelToken, Solver, Status};
 use foldfree::parameterization::Parameterization;
 use glam::DVec2;
 use std::path::Path;
-use web_time::Instant;
 
 /// Reads, flattens, writes, reports.
 pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
@@ -23,9 +23,9 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
         .build_global()
         .map_err(Failure::new)?;
 
-    let clock = Instant::now();
+    let clock = Stopwatch::start();
     let input = files::read_mesh(&arguments.input)?;
-    let read_seconds = clock.elapsed().as_secs_f64();
+    let read_seconds = clock.seconds();
     let of_input = |error: foldfree::Error| Failure::of_file(&arguments.input, error);
     let mut map = Parameterization::new(&input.mesh, &options).map_err(of_input)?;
     let reference = match &arguments.reference {
@@ -58,9 +58,9 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.out {
         files::write(path, &textured(&input.mesh, &map, &uv))?;
     }
-    let clock = Instant::now();
+    let clock = Stopwatch::start();
     let certificate = map.certificate();
-    let certificate_seconds = clock.elapsed().as_secs_f64();
+    let certificate_seconds = clock.seconds();
     let seconds = iterations.last().map_or(0.0, |i: &Iteration| i.seconds);
     if !arguments.quiet {
         let steps = iterations.last().map_or(0, |i| i.iteration);
