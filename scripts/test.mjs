@@ -50,9 +50,8 @@ async function wasm(threads) {
     CARGO_PROFILE_RELEASE_CODEGEN_UNITS: '16',
     WASM_BINDGEN_TEST_TIMEOUT: '300',
   });
-  const args = ['test', '--release', '--mode', 'no-install', '--headless', '--chrome', '--chromedriver', driver, '--', ...buildStd];
-  args.push('--no-default-features', ...(threads ? ['--features', 'threads'] : []));
-  args.push('--test', threads ? 'wasm_threads' : 'wasm_single');
+  const args = ['test', 'tests/wasm', '--release', '--mode', 'no-install', '--headless', '--chrome', '--chromedriver', driver, '--', ...buildStd];
+  args.push(...(threads ? ['--features', 'threads'] : []), '--test', threads ? 'threads' : 'single');
   const { output } = await run(pack, args, {
     label: `wasm-pack tests (${name})`, estimate: '3 minutes', env, check: false, log: log(name),
   });
