@@ -51,12 +51,12 @@ async function wasm(threads) {
     WASM_BINDGEN_TEST_TIMEOUT: '300',
   });
   const args = ['test', '--release', '--mode', 'no-install', '--headless', '--chrome', '--chromedriver', driver, '--', ...buildStd];
-  args.push('--no-default-features', ...(threads ? ['--features', 'threads'] : []));
-  args.push('--test', threads ? 'wasm_threads' : 'wasm_single');
-  const { output } = await run(pack, args, {
-    label: `wasm-pack tests (${name})`, estimate: '3 minutes', env, check: false, log: log(name),
+  args.push(...(threads ? ['--features', 'threads'] : []), '--test', threads ? 'threads' : 'single');
+  const { code, output } = await run(pack, args, {
+    label: `wasm-pack tests (${name})`, estimate: '3 minutes', env, cwd: join(root, 'tests', 'wasm'), check: false, log: log(name),
   });
-  console.log(output.split('\n').filter((line) => /^test |test result|panicked|error/.test(line.trim())).join('\n'));
+  if (code !== 0) console.log(output.split('\n').slice(-40).join('\n'));
+  else console.log(output.split('\n').filter((line) => /^test |test result|panicked|error/.test(line.trim())).join('\n'));
   return count(output, LIBTEST);
 }
 

@@ -1,13 +1,11 @@
 //! The single-thread build in a headless browser: `npm test`, or `wasm-pack test` as it calls it.
 #![cfg(target_arch = "wasm32")]
 
-mod wasm_support;
-
 use foldfree::wasm::{WasmMesh, WasmParameterization, check_map};
+use foldfree_wasm_tests::{field, flatten, options};
 use js_sys::{Object, Reflect};
 use wasm_bindgen::JsValue;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
-use wasm_support::{field, flatten, options};
 
 wasm_bindgen_test_configure!(run_in_dedicated_worker);
 

@@ -1,11 +1,9 @@
 //! The threaded build in a headless browser, on a pool of two Web Workers.
 #![cfg(all(target_arch = "wasm32", feature = "threads"))]
 
-mod wasm_support;
-
+use foldfree_wasm_tests::flatten;
 use wasm_bindgen_futures::JsFuture;
 use wasm_bindgen_test::{wasm_bindgen_test, wasm_bindgen_test_configure};
-use wasm_support::flatten;
 
 wasm_bindgen_test_configure!(run_in_dedicated_worker);
 
