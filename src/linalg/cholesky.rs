@@ -16,8 +16,10 @@ use faer::{Par, Side};
 use nalgebra_sparse::CscMatrix;
 
 use super::EliminationTree;
-use super::triangular::ColumnsOfL;
+use super::panels::Panels;
+use super::triangular::Factor;
 use crate::optim::BuildError;
+use crate::parallel;
 
 /// An order of elimination.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,14 +47,14 @@ pub struct Cholesky {
     /// Supernodal values.
     blocks: Vec<f64>,
     workspace: MemBuffer,
-    /// L by columns, diagonal first, without the supernodes' zeros.
-    column_begin: Vec<u32>,
-    rows: Vec<u32>,
-    /// Where the rows of the common top begin in each column of a part.
-    inner_end: Vec<u32>,
+    /// L for the solves, without the supernodes' zeros.
+    panels: Panels,
     values: Vec<f64>,
-    /// Reciprocal diagonal.
+    /// For each of these values where it is in `blocks`, the last of which is a zero.
+    source: Vec<u32>,
+    /// Reciprocal diagonal, and where it is in `values`.
     inverse_diagonal: Vec<f64>,
+    diagonal: Vec<u32>,
     /// Ends of the independent parts.
     parts: Vec<usize>,
     /// What each part adds to the top in a solve: room for three right-hand sides.
@@ -143,21 +145,22 @@ impl Cholesky {
                 Default::default(),
             ),
         };
-        let blocks = vec![0.0; symbolic.len_val()];
-        let mut this = Self {
+        let blocks = vec![0.0; symbolic.len_val() + 1];
+        let panels = Panels::new(&upper, parts);
+        let source = sources(&symbolic, &panels);
+        let diagonal = panels.diagonal();
+        Ok(Self {
             symbolic,
             blocks,
             workspace: MemBuffer::new(scratch),
-            column_begin: Vec::new(),
-            rows: Vec::new(),
-            inner_end: Vec::new(),
-            values: Vec::new(),
+            values: vec![0.0; panels.values],
+            source,
             inverse_diagonal: vec![0.0; n],
+            diagonal,
             parts: parts.to_vec(),
             to_top: vec![0.0; 3 * parts.len() * (n - parts.last().copied().unwrap_or(n))],
-        };
-        this.build_columns(&upper);
-        Ok(this)
+            panels,
+        })
     }
 
     /// Number of unknowns.
@@ -167,41 +170,7 @@ impl Cholesky {
 
     /// Number of stored entries of L.
     pub fn factor_entries(&self) -> usize {
-        self.values.len()
-    }
-
-    /// The exact pattern of L, column by column.
-    fn build_columns(&mut self, upper: &CscMatrix<f64>) {
-        let n = upper.ncols();
-        let tree = EliminationTree::new(upper);
-        let mut count = vec![1u32; n];
-        tree.for_each_entry(upper, |_, j| count[j] += 1);
-        let mut begin = Vec::with_capacity(n + 1);
-        begin.push(0u32);
-        for &c in &count {
-            begin.push(begin[begin.len() - 1] + c);
-        }
-        let mut rows = vec![0u32; begin[n] as usize];
-        let mut next: Vec<u32> = begin[..n].to_vec();
-        for (j, slot) in next.iter_mut().enumerate() {
-            rows[*slot as usize] = j as u32;
-            *slot += 1;
-        }
-        tree.for_each_entry(upper, |i, j| {
-            rows[next[j] as usize] = i as u32;
-            next[j] += 1;
-        });
-        let bottom = self.parts.last().copied().unwrap_or(0);
-        self.inner_end = (0..n)
-            .map(|j| {
-                let column = &rows[begin[j] as usize..begin[j + 1] as usize];
-                let own = |&r: &u32| j >= bottom || (r as usize) < bottom;
-                begin[j] + column.partition_point(own) as u32
-            })
-            .collect();
-        self.values = vec![0.0; rows.len()];
-        self.rows = rows;
-        self.column_begin = begin;
+        self.panels.entries
     }
 
     /// Factors `lower`, whose pattern must be the analysed one. Allocates nothing.
@@ -215,7 +184,7 @@ impl Cholesky {
         let blocks = blocks_of(&self.symbolic);
         let matrix = SparseColMatRef::new(symbolic_of(lower), lower.values());
         supernodal::factorize_supernodal_numeric_llt::<usize, f64>(
-            &mut self.blocks,
+            &mut self.blocks[..self.symbolic.len_val()],
             matrix,
             LltRegularization::default(),
             blocks,
@@ -224,49 +193,25 @@ impl Cholesky {
             Default::default(),
         )
         .map_err(|LltError::NonPositivePivot { index }| NotPositiveDefinite { pivot: index })?;
-        self.copy_columns()
+        self.copy_panels()
     }
 
-    /// Copies the supernodes into columns, dropping their padding.
-    fn copy_columns(&mut self) -> Result<(), NotPositiveDefinite> {
-        let symbolic = blocks_of(&self.symbolic);
-        let factor = supernodal::SupernodalLltRef::new(symbolic, &self.blocks[..]);
-        for s in 0..symbolic.n_supernodes() {
-            let node = factor.supernode(s);
-            let (start, pattern, block) = (node.start(), node.pattern(), node.val());
-            let width = block.ncols();
-            for local in 0..width {
-                let j = start + local;
-                let range = self.column_begin[j] as usize..self.column_begin[j + 1] as usize;
-                let rows = &self.rows[range.clone()];
-                let values = &mut self.values[range];
-                let column = block.col(local);
-                let column = column
-                    .try_as_col_major()
-                    .map(|c| c.as_slice())
-                    .unwrap_or(&[]);
-                if column.is_empty() {
-                    return Err(NotPositiveDefinite { pivot: j });
-                }
-                // both lists are sorted; the supernode's may have more
-                let mut at = 0;
-                for (&row, value) in rows.iter().zip(values.iter_mut()) {
-                    let row = row as usize;
-                    if row < start + width {
-                        *value = column[row - start];
-                    } else {
-                        while pattern[at] < row {
-                            at += 1;
-                        }
-                        *value = column[width + at];
-                    }
-                }
-                let diagonal = values[0];
-                if !(diagonal > 0.0 && diagonal.is_finite()) {
-                    return Err(NotPositiveDefinite { pivot: j });
-                }
-                self.inverse_diagonal[j] = diagonal.recip();
+    /// Copies the supernodes into panels, dropping their padding.
+    fn copy_panels(&mut self) -> Result<(), NotPositiveDefinite> {
+        const CHUNK: usize = 1 << 15;
+        let (blocks, source) = (&self.blocks[..], &self.source[..]);
+        parallel::for_each_chunk(&mut self.values, CHUNK, |chunk, values| {
+            let source = &source[chunk * CHUNK..][..values.len()];
+            for (value, &at) in values.iter_mut().zip(source) {
+                *value = blocks[at as usize];
             }
+        });
+        for (pivot, inverse) in self.inverse_diagonal.iter_mut().enumerate() {
+            let diagonal = self.values[self.diagonal[pivot] as usize];
+            if !(diagonal > 0.0 && diagonal.is_finite()) {
+                return Err(NotPositiveDefinite { pivot });
+            }
+            *inverse = diagonal.recip();
         }
         Ok(())
     }
@@ -274,21 +219,48 @@ impl Cholesky {
     /// Solves A X = B in place for `columns` right-hand sides (1, 2 or 3), interleaved: n × columns,
     /// row by row.
     pub fn solve_in_place(&mut self, x: &mut [f64], columns: usize) {
-        let columns_of_l = ColumnsOfL {
-            begin: &self.column_begin,
-            rows: &self.rows,
+        let factor = Factor {
+            panels: &self.panels,
             values: &self.values,
             inverse_diagonal: &self.inverse_diagonal,
-            inner_end: &self.inner_end,
             parts: &self.parts,
         };
         match columns {
-            1 => columns_of_l.solve::<1>(x.as_chunks_mut().0, &mut self.to_top),
-            2 => columns_of_l.solve::<2>(x.as_chunks_mut().0, &mut self.to_top),
-            3 => columns_of_l.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
+            1 => factor.solve::<1>(x.as_chunks_mut().0, &mut self.to_top),
+            2 => factor.solve::<2>(x.as_chunks_mut().0, &mut self.to_top),
+            3 => factor.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
             _ => unreachable!("one to three right-hand sides, not {columns}"),
         }
     }
+}
+
+/// Where each value of the panels is in faer's supernodes; the zeros that fill up are at the end.
+fn sources(symbolic: &SymbolicCholesky<usize>, panels: &Panels) -> Vec<u32> {
+    if symbolic.nrows() == 0 {
+        return Vec::new();
+    }
+    let fill = symbolic.len_val() as u32;
+    let blocks = blocks_of(symbolic);
+    // of the supernode `node`, whose columns end at `end`: where each row is in them
+    let mut place = vec![0u32; symbolic.nrows()];
+    let (mut node, mut end, mut height) = (0, 0, 0);
+    panels.map(fill, |i, j| {
+        let j = j as usize;
+        let begin = blocks.supernode_begin();
+        if j >= end {
+            node = begin.partition_point(|&b| b <= j) - 1;
+            end = blocks.supernode_end()[node];
+            let pattern = blocks.supernode(node).pattern();
+            for (k, row) in (begin[node]..end)
+                .chain(pattern.iter().copied())
+                .enumerate()
+            {
+                place[row] = k as u32;
+            }
+            height = end - begin[node] + pattern.len();
+        }
+        (blocks.col_ptr_for_val()[node] + (j - begin[node]) * height) as u32 + place[i as usize]
+    })
 }
 
 fn blocks_of(symbolic: &SymbolicCholesky<usize>) -> &supernodal::SymbolicSupernodalCholesky<usize> {

@@ -59,6 +59,24 @@ impl EliminationTree {
         }
     }
 
+    /// The rows of each column of L below the diagonal, ascending, column by column: where each begins,
+    /// and the rows.
+    pub fn columns(&self, upper: &CscMatrix<f64>) -> (Vec<u32>, Vec<u32>) {
+        let n = self.parent.len();
+        let mut begin = vec![0u32; n + 1];
+        self.for_each_entry(upper, |_, j| begin[j + 1] += 1);
+        for j in 0..n {
+            begin[j + 1] += begin[j];
+        }
+        let mut next = begin.clone();
+        let mut rows = vec![0u32; begin[n] as usize];
+        self.for_each_entry(upper, |i, j| {
+            rows[next[j] as usize] = i as u32;
+            next[j] += 1;
+        });
+        (begin, rows)
+    }
+
     /// An equivalent order in which each of a few subtrees is contiguous, the rest of the tree (its
     /// top) at the end: `order[k]` is the column that becomes the k-th. Also where each part ends.
     pub fn split(&self, upper: &CscMatrix<f64>, parts: usize) -> (Vec<u32>, Vec<usize>) {

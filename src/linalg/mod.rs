@@ -3,6 +3,7 @@
 mod assembly;
 mod cholesky;
 mod elimination_tree;
+mod panels;
 mod triangular;
 
 pub use assembly::{SymmetricAssembly, WeightedSum};

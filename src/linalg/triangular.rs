@@ -1,173 +1,291 @@
-//! Triangular solves with a factor stored by columns, part by part.
+//! Triangular solves with a factor in panels, part by part.
 
+use super::panels::{Panel, Panels, ROWS, WIDEST};
 use crate::parallel;
 use core::ops::Range;
 
-/// L by columns, diagonal first, with the independent parts of its elimination tree.
+/// L in panels, with the independent parts of its elimination tree.
 #[derive(Clone, Copy)]
-pub struct ColumnsOfL<'a> {
-    /// Where each column begins; length: n + 1.
-    pub begin: &'a [u32],
-    /// Row of each entry, ascending in a column.
-    pub rows: &'a [u32],
-    /// Value of each entry.
+pub struct Factor<'a> {
+    /// Which columns and rows.
+    pub panels: &'a Panels,
+    /// Their values.
     pub values: &'a [f64],
     /// 1/L_jj.
     pub inverse_diagonal: &'a [f64],
-    /// In each column, where the rows of the top begin (an index into `rows`).
-    pub inner_end: &'a [u32],
-    /// Ends of the parts; the columns after the last are their common top.
+    /// Ends of the parts, as columns; the columns after the last are their common top.
     pub parts: &'a [usize],
 }
 
-/// What is done with a part: its columns, its unknowns, its room for the top.
-type EachPart<'a, const D: usize> =
-    dyn Fn(Range<usize>, &mut [[f64; D]], &mut [[f64; D]]) + Sync + 'a;
+/// What is done with a part: its number, its unknowns, its workspace.
+type EachPart<'a, const D: usize> = dyn Fn(usize, &mut [[f64; D]], &mut [[f64; D]]) + Sync + 'a;
 
-/// Runs each part with its own unknowns and its room for the top, side by side where there are
-/// threads.
+/// Runs each part with its own unknowns and its workspace, side by side where there are threads.
 fn for_each_part<const D: usize>(
     parts: &[usize],
-    mut own: &mut [[f64; D]],
-    first: usize,
-    mut tops: &mut [[f64; D]],
-    top: usize,
+    (number, first): (usize, usize),
+    own: &mut [[f64; D]],
+    work: &mut [[f64; D]],
     each: &EachPart<D>,
 ) {
     match parts {
         [] => {}
-        &[end] => each(first..end, own, tops),
+        [_] => each(number, own, work),
         _ => {
             let half = parts.len() / 2;
             let middle = parts[half - 1];
+            let each_work = work.len() / parts.len();
             let (own_a, own_b) = own.split_at_mut(middle - first);
-            let (tops_a, tops_b) = tops.split_at_mut(half * top);
-            (own, tops) = (own_a, tops_a);
+            let (work_a, work_b) = work.split_at_mut(half * each_work);
             parallel::join(
-                || for_each_part(&parts[..half], own, first, tops, top, each),
-                || for_each_part(&parts[half..], own_b, middle, tops_b, top, each),
+                || for_each_part(&parts[..half], (number, first), own_a, work_a, each),
+                || for_each_part(&parts[half..], (number + half, middle), own_b, work_b, each),
             );
         }
     }
 }
 
-impl ColumnsOfL<'_> {
+/// The `number`-th of consecutive ranges with these ends.
+fn range(ends: &[usize], number: usize) -> Range<usize> {
+    number.checked_sub(1).map_or(0, |before| ends[before])..ends[number]
+}
+
+impl Factor<'_> {
     /// Solves L Lᵀ X = B in place, X interleaved. Sums are taken in the order of the parts, whatever
-    /// the number of threads. `to_top` has room for D numbers a part and unknown of the top.
-    pub fn solve<const D: usize>(&self, x: &mut [[f64; D]], to_top: &mut [f64]) {
+    /// the number of threads. `work` has room for D numbers a part and unknown of the top.
+    pub fn solve<const D: usize>(&self, x: &mut [[f64; D]], work: &mut [f64]) {
         let n = x.len();
         let bottom = self.parts.last().copied().unwrap_or(0);
         let (own, top) = x.split_at_mut(bottom);
-        let tops = &mut to_top.as_chunks_mut::<D>().0[..self.parts.len() * top.len()];
-        for_each_part(
-            self.parts,
-            own,
-            0,
-            tops,
-            top.len(),
-            &|range, own, to_top| {
-                to_top.fill([0.0; D]);
-                self.forward(range, bottom, own, to_top);
-            },
-        );
-        for add in tops.chunks_exact(top.len().max(1)) {
+        let top_panels = self.panels.parts.last().copied().unwrap_or(0)..self.panels.panels.len();
+        let work = &mut work.as_chunks_mut::<D>().0[..self.parts.len() * top.len()];
+        for_each_part(self.parts, (0, 0), own, work, &|part, own, to_top| {
+            to_top.fill([0.0; D]);
+            Forward {
+                factor: self,
+                panels: range(&self.panels.parts, part),
+                first: range(self.parts, part).start,
+                bottom,
+                own,
+                top: to_top,
+            }
+            .run();
+        });
+        for add in work.chunks_exact(top.len().max(1)) {
             for (x, add) in top.iter_mut().zip(add) {
                 for d in 0..D {
                     x[d] += add[d];
                 }
             }
         }
-        self.forward(bottom..n, n, top, &mut []);
-        self.backward(bottom..n, n, top, &[]);
+        Forward {
+            factor: self,
+            panels: top_panels.clone(),
+            first: bottom,
+            bottom: n,
+            own: top,
+            top: &mut [],
+        }
+        .run();
+        Backward {
+            factor: self,
+            panels: top_panels,
+            first: bottom,
+            bottom: n,
+            own: top,
+            top: &[],
+        }
+        .run();
         let top = &*top;
-        for_each_part(self.parts, own, 0, &mut [], 0, &|range, own, _| {
-            self.backward(range, bottom, own, top);
+        for_each_part(self.parts, (0, 0), own, &mut [], &|part, own, _| {
+            Backward {
+                factor: self,
+                panels: range(&self.panels.parts, part),
+                first: range(self.parts, part).start,
+                bottom,
+                own,
+                top,
+            }
+            .run();
         });
     }
+}
 
-    /// The rows and values below the diagonal of column j, and how many of them come before the top's
-    /// (all, in the top itself).
-    #[inline(always)]
-    fn below(&self, j: usize) -> (&[u32], &[f64], usize) {
-        let range = self.begin[j] as usize + 1..self.begin[j + 1] as usize;
-        let inner = self.inner_end[j] as usize - range.start;
-        (&self.rows[range.clone()], &self.values[range], inner)
-    }
+/// The columns of a panel's triangle at the diagonal, one after the other, without the diagonal:
+/// where each begins.
+#[inline(always)]
+fn triangle_column(panel: &Panel, local: usize) -> Range<usize> {
+    let width = panel.width as usize;
+    let begin = panel.values as usize + local * width - local * local.saturating_sub(1) / 2 + 1;
+    begin..begin + width - 1 - local
+}
 
-    /// L y = b for the columns in `range`, whose unknowns are `own`; rows from `bottom` on go to `top`.
-    fn forward<const D: usize>(
-        &self,
-        range: Range<usize>,
-        bottom: usize,
-        own: &mut [[f64; D]],
-        top: &mut [[f64; D]],
-    ) {
-        let first = range.start;
-        for j in range {
-            let (rows, values, inner) = self.below(j);
-            let inverse = self.inverse_diagonal[j];
-            let xj = own[j - first].map(|v| v * inverse);
-            own[j - first] = xj;
-            for (&row, &l) in rows[..inner].iter().zip(&values[..inner]) {
-                let target = &mut own[row as usize - first];
+/// L y = b for some panels, the first of which belongs to the unknown `first`; rows from `bottom` on
+/// are added up in `top`.
+struct Forward<'a, const D: usize> {
+    factor: &'a Factor<'a>,
+    panels: Range<usize>,
+    first: usize,
+    bottom: usize,
+    own: &'a mut [[f64; D]],
+    top: &'a mut [[f64; D]],
+}
+
+impl<const D: usize> Forward<'_, D> {
+    fn run(self) {
+        let Self {
+            factor,
+            panels,
+            first,
+            bottom,
+            own,
+            top,
+        } = self;
+        for panel in &factor.panels.panels[panels] {
+            let (start, width) = (panel.first as usize, panel.width as usize);
+            let x = start - first;
+            for local in 0..width {
+                let inverse = factor.inverse_diagonal[start + local];
+                let mut xj = own[x + local];
                 for d in 0..D {
-                    target[d] -= l * xj[d];
+                    xj[d] *= inverse;
+                }
+                own[x + local] = xj;
+                let column = &factor.values[triangle_column(panel, local)];
+                for (target, l) in own[x + local + 1..].iter_mut().zip(column) {
+                    for d in 0..D {
+                        target[d] -= l * xj[d];
+                    }
                 }
             }
-            for (&row, &l) in rows[inner..].iter().zip(&values[inner..]) {
-                let target = &mut top[row as usize - bottom];
-                for d in 0..D {
-                    target[d] -= l * xj[d];
+            let below = panel.values as usize + panel.triangle();
+            let fours = factor.panels.rows[panel.rows()].iter();
+            let blocks = factor.values[below..].chunks_exact(width * ROWS);
+            for (number, (rows, block)) in fours.zip(blocks).enumerate() {
+                let mut sum = [[0.0; D]; ROWS];
+                for (l, x) in block.as_chunks::<ROWS>().0.iter().zip(&own[x..]) {
+                    for k in 0..ROWS {
+                        for d in 0..D {
+                            sum[k][d] += l[k] * x[d];
+                        }
+                    }
+                }
+                let (target, base) = match number < panel.inner as usize {
+                    true => (&mut *own, first),
+                    false => (&mut *top, bottom),
+                };
+                for k in 0..ROWS {
+                    let target = &mut target[rows[k] as usize - base];
+                    for d in 0..D {
+                        target[d] -= sum[k][d];
+                    }
                 }
             }
-        }
-    }
-
-    /// Lᵀ x = y for the columns in `range`; rows from `bottom` on are read from `top`.
-    fn backward<const D: usize>(
-        &self,
-        range: Range<usize>,
-        bottom: usize,
-        own: &mut [[f64; D]],
-        top: &[[f64; D]],
-    ) {
-        let first = range.start;
-        for j in range.rev() {
-            let (rows, values, inner) = self.below(j);
-            let mut sum = own[j - first];
-            subtract_products(&mut sum, &rows[..inner], &values[..inner], own, first);
-            subtract_products(&mut sum, &rows[inner..], &values[inner..], top, bottom);
-            let inverse = self.inverse_diagonal[j];
-            own[j - first] = sum.map(|v| v * inverse);
         }
     }
 }
 
-/// sum −= Σ l x_row, in two interleaved chains.
+/// Rows, in fours, that are gathered at a time.
+const GATHERED: usize = 32;
+
+/// sums_c += Σ l_c x over the rows, for C columns from `column` on, in two chains each.
 #[inline(always)]
-fn subtract_products<const D: usize>(
-    sum: &mut [f64; D],
-    rows: &[u32],
-    values: &[f64],
-    x: &[[f64; D]],
-    first: usize,
+fn add_products<const C: usize, const D: usize>(
+    sums: &mut [[f64; D]],
+    values: &[[f64; ROWS]],
+    width: usize,
+    column: usize,
+    gathered: &[[[f64; D]; ROWS]],
 ) {
-    let mut odd = [0.0; D];
-    let (row_pairs, last_row) = rows.as_chunks::<2>();
-    let (value_pairs, last_value) = values.as_chunks::<2>();
-    for (row, l) in row_pairs.iter().zip(value_pairs) {
-        let (a, b) = (&x[row[0] as usize - first], &x[row[1] as usize - first]);
-        for d in 0..D {
-            sum[d] -= l[0] * a[d];
-            odd[d] -= l[1] * b[d];
+    let mut chains = [[[0.0; D]; 2]; C];
+    for (l, x) in values.chunks_exact(width).zip(gathered).rev() {
+        let l = &l[column..column + C];
+        for c in 0..C {
+            for k in 0..ROWS {
+                for d in 0..D {
+                    chains[c][k % 2][d] += l[c][k] * x[k][d];
+                }
+            }
         }
     }
-    if let (Some(&row), Some(&l)) = (last_row.first(), last_value.first()) {
+    for c in 0..C {
         for d in 0..D {
-            sum[d] -= l * x[row as usize - first][d];
+            sums[c][d] += chains[c][0][d] + chains[c][1][d];
         }
     }
-    for d in 0..D {
-        sum[d] += odd[d];
+}
+
+/// Lᵀ x = y for some panels, from the last to the first; rows from `bottom` on are read from `top`.
+struct Backward<'a, const D: usize> {
+    factor: &'a Factor<'a>,
+    panels: Range<usize>,
+    first: usize,
+    bottom: usize,
+    own: &'a mut [[f64; D]],
+    top: &'a [[f64; D]],
+}
+
+impl<const D: usize> Backward<'_, D> {
+    fn run(self) {
+        let Self {
+            factor,
+            panels,
+            first,
+            bottom,
+            own,
+            top,
+        } = self;
+        let mut gathered = [[[0.0; D]; ROWS]; GATHERED];
+        for panel in factor.panels.panels[panels].iter().rev() {
+            let (start, width) = (panel.first as usize, panel.width as usize);
+            let x = start - first;
+            let mut sums = [[0.0; D]; WIDEST];
+            let below = panel.values as usize + panel.triangle();
+            let (rows, inner) = (panel.rows(), panel.inner as usize);
+            let rows = &factor.panels.rows[rows];
+            let values = &factor.values[below..below + rows.len() * width * ROWS];
+            let values = values.as_chunks::<ROWS>().0;
+            // from the last row to the first: L is read against its direction throughout, so that the
+            // processor can see what will be needed
+            for begin in (0..rows.len()).step_by(GATHERED).rev() {
+                let rows = &rows[begin..(begin + GATHERED).min(rows.len())];
+                let gathered = &mut gathered[..rows.len()];
+                let own_rows = inner.saturating_sub(begin).min(rows.len());
+                for (x, rows) in gathered.iter_mut().zip(&rows[..own_rows]) {
+                    *x = rows.map(|row| own[row as usize - first]);
+                }
+                for (x, rows) in gathered[own_rows..].iter_mut().zip(&rows[own_rows..]) {
+                    *x = rows.map(|row| top[row as usize - bottom]);
+                }
+                let values = &values[begin * width..(begin + rows.len()) * width];
+                let mut column = 0;
+                for sums in sums[..width].chunks_mut(4) {
+                    match sums.len() {
+                        1 => add_products::<1, D>(sums, values, width, column, gathered),
+                        2 => add_products::<2, D>(sums, values, width, column, gathered),
+                        3 => add_products::<3, D>(sums, values, width, column, gathered),
+                        _ => add_products::<4, D>(sums, values, width, column, gathered),
+                    }
+                    column += sums.len();
+                }
+            }
+            for local in (0..width).rev() {
+                let mut xj = own[x + local];
+                for d in 0..D {
+                    xj[d] -= sums[local][d];
+                }
+                let column = &factor.values[triangle_column(panel, local)];
+                for (other, l) in own[x + local + 1..].iter().zip(column) {
+                    for d in 0..D {
+                        xj[d] -= l * other[d];
+                    }
+                }
+                let inverse = factor.inverse_diagonal[start + local];
+                for d in 0..D {
+                    xj[d] *= inverse;
+                }
+                own[x + local] = xj;
+            }
+        }
     }
 }

@@ -1,0 +1,154 @@
+//! Where the entries of L lie for triangular solves: panels without padding zeros.
+//!
+//! A panel is a run of columns with exactly the same rows below them. Its values lie in the order in
+//! which a solve reads them: the columns of the triangle at the diagonal, then the rows below, four at
+//! a time: all columns of the first four rows, all of the next. The row indices are stored once.
+
+use super::EliminationTree;
+use nalgebra_sparse::CscMatrix;
+
+/// Rows that go through a panel at a time. The rows of a panel are filled up to a multiple, with zeros
+/// that belong to rows already there.
+pub const ROWS: usize = 4;
+
+/// Widest panel: wider ones are split, so that their triangles stay small.
+pub const WIDEST: usize = 16;
+
+/// Consecutive columns of L with the same rows below them.
+#[derive(Debug, Clone, Copy)]
+pub struct Panel {
+    /// First column.
+    pub first: u32,
+    /// Columns.
+    pub width: u32,
+    /// Where its values begin.
+    pub values: u32,
+    /// Where its rows begin (in fours).
+    pub rows: u32,
+    /// How many fours of rows it has,
+    pub fours: u32,
+    /// and how many of them are in its own part (all, in the top).
+    pub inner: u32,
+}
+
+impl Panel {
+    /// Where its rows below the diagonal are, in fours.
+    #[inline(always)]
+    pub fn rows(&self) -> core::ops::Range<usize> {
+        self.rows as usize..(self.rows + self.fours) as usize
+    }
+    /// Entries in the triangle at the diagonal.
+    #[inline(always)]
+    pub fn triangle(&self) -> usize {
+        let width = self.width as usize;
+        width * (width + 1) / 2
+    }
+    /// Values, zeros that fill up included.
+    fn len(&self) -> usize {
+        self.triangle() + self.fours as usize * ROWS * self.width as usize
+    }
+}
+
+/// The panels of a factor.
+#[derive(Debug, Clone, Default)]
+pub struct Panels {
+    /// By ascending column.
+    pub panels: Vec<Panel>,
+    /// Rows below, ascending but for the fill.
+    pub rows: Vec<[u32; ROWS]>,
+    /// Ends of the parts, as panels.
+    pub parts: Vec<usize>,
+    /// Number of values.
+    pub values: usize,
+    /// Entries of L: values that are not fill.
+    pub entries: usize,
+}
+
+impl Panels {
+    /// The panels of the factor of a matrix with this upper triangle and parts of its order (ends, as
+    /// columns).
+    pub fn new(upper: &CscMatrix<f64>, column_parts: &[usize]) -> Self {
+        let n = upper.ncols();
+        let tree = EliminationTree::new(upper);
+        let (begin, rows) = tree.columns(upper);
+        let count = |j: usize| begin[j + 1] - begin[j];
+        let bottom = column_parts.last().copied().unwrap_or(0);
+        let mut this = Self {
+            entries: n + rows.len(),
+            ..Self::default()
+        };
+        let mut part = 0;
+        let mut j = 0;
+        while j < n {
+            while part < column_parts.len() && j >= column_parts[part] {
+                this.parts.push(this.panels.len());
+                part += 1;
+            }
+            let end = column_parts.get(part).copied().unwrap_or(n).min(j + WIDEST);
+            let mut last = j;
+            // beside its own, a column has at most the rows of its parent
+            while last + 1 < end
+                && tree.parent[last] == last as u32 + 1
+                && count(last) == count(last + 1) + 1
+            {
+                last += 1;
+            }
+            let below = &rows[begin[last] as usize..begin[last + 1] as usize];
+            let own = below.partition_point(|&r| j >= bottom || (r as usize) < bottom);
+            let (own, top) = below.split_at(own);
+            let mut panel = Panel {
+                first: j as u32,
+                width: (last + 1 - j) as u32,
+                values: this.values as u32,
+                rows: this.rows.len() as u32,
+                fours: 0,
+                inner: 0,
+            };
+            this.push_rows(own);
+            panel.inner = this.rows.len() as u32 - panel.rows;
+            this.push_rows(top);
+            panel.fours = this.rows.len() as u32 - panel.rows;
+            this.values += panel.len();
+            this.panels.push(panel);
+            j = last + 1;
+        }
+        this.parts.resize(column_parts.len(), this.panels.len());
+        this
+    }
+
+    fn push_rows(&mut self, rows: &[u32]) {
+        self.rows.extend(rows.chunks(ROWS).map(|four| {
+            let last = four[four.len() - 1];
+            core::array::from_fn(|k| four.get(k).copied().unwrap_or(last))
+        }));
+    }
+
+    /// For each value, what `source(row, column)` says where that entry of L comes from, or `fill`.
+    pub fn map(&self, fill: u32, mut source: impl FnMut(u32, u32) -> u32) -> Vec<u32> {
+        let mut map = Vec::with_capacity(self.values);
+        for panel in &self.panels {
+            let columns = panel.first..panel.first + panel.width;
+            for j in columns.clone() {
+                map.extend((j..columns.end).map(|i| source(i, j)));
+            }
+            for four in &self.rows[panel.rows()] {
+                for j in columns.clone() {
+                    map.extend((0..ROWS).map(|k| match k {
+                        _ if k > 0 && four[k] == four[k - 1] => fill,
+                        _ => source(four[k], j),
+                    }));
+                }
+            }
+        }
+        map
+    }
+
+    /// Where the diagonal is in the values.
+    pub fn diagonal(&self) -> Vec<u32> {
+        let of_panel = |panel: &Panel| {
+            let (begin, width) = (panel.values, panel.width);
+            (0..width).map(move |j| begin + j * width - j * j.saturating_sub(1) / 2)
+        };
+        self.panels.iter().flat_map(of_panel).collect()
+    }
+}
