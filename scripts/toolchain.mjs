@@ -188,7 +188,7 @@ const SHARED_MEMORY = 1 << 30; // modest: phones reserve all of it
  */
 function wasmFlags(threads) {
   const features = threads ? '+atomics,+bulk-memory,+mutable-globals,+simd128' : '+bulk-memory,+simd128';
-  const flags = ['-C', `target-feature=${features}`, '-C', 'llvm-args=-inline-threshold=25', '-Z', 'location-detail=none'];
+  const flags = ['-C', `target-feature=${features}`, '-C', 'llvm-args=-inline-threshold=60', '-Z', 'location-detail=none'];
   for (const [from, to] of [[cargoHome, 'cargo'], [root, 'foldfree']]) flags.push(`--remap-path-prefix=${from}=${to}`);
   const link = threads
     ? [

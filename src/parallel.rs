@@ -55,6 +55,16 @@ pub(crate) fn join<A: Send, B: Send>(
     (a(), b())
 }
 
+/// Runs `work` on a thread of the current pool: from there on every parallel loop is a call, where
+/// from outside it would be a message to the pool and a wait for its answer.
+pub(crate) fn in_pool<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    #[cfg(feature = "parallel")]
+    if rayon::current_num_threads() > 1 {
+        return rayon::scope(|_| work());
+    }
+    work()
+}
+
 /// Threads of the current pool.
 pub(crate) fn threads() -> usize {
     #[cfg(feature = "parallel")]

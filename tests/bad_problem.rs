@@ -30,8 +30,8 @@ fn problem() -> (RestShape, Vec<f64>) {
 fn solvers_refuse(problem: Problem) -> BuildError {
     let options = WrapdOptions::default();
     let errors = [
-        Wrapd::<Plane, RotationAware, _>::new(problem, SymmetricDirichlet, options).err(),
-        Wrapd::<Plane, Linear, _>::new(problem, Arap, options).err(),
+        Wrapd::new::<Plane, RotationAware, _>(problem, SymmetricDirichlet, options).err(),
+        Wrapd::new::<Plane, Linear, _>(problem, Arap, options).err(),
         ArapLocalGlobal::<Plane>::new(problem, 1e-6, 10).err(),
     ];
     let [Some(error), second, third] = errors else {
@@ -52,7 +52,7 @@ fn problems_whose_parts_do_not_fit() {
         start: &start,
         pins: &[4],
     };
-    assert!(Wrapd::<Plane, RotationAware, _>::new(good, Arap, WrapdOptions::default()).is_ok());
+    assert!(Wrapd::new::<Plane, RotationAware, _>(good, Arap, WrapdOptions::default()).is_ok());
 
     let short = &start[..start.len() - 1];
     let error = solvers_refuse(Problem {
@@ -129,7 +129,7 @@ fn everything_pinned() {
     };
     let options = WrapdOptions::default();
     let mut solver =
-        Wrapd::<Plane, RotationAware, _>::new(problem, SymmetricDirichlet, options).unwrap();
+        Wrapd::new::<Plane, RotationAware, _>(problem, SymmetricDirichlet, options).unwrap();
     let energy = solver.report().energy;
     let report = solver.step().unwrap();
     assert_eq!(report.energy, energy);
@@ -199,6 +199,6 @@ fn solver_options_out_of_range() {
     };
     for options in bad {
         assert!(options.validate().is_err(), "{options:?}");
-        assert!(Wrapd::<Plane, Linear, _>::new(problem, Arap, options).is_err());
+        assert!(Wrapd::new::<Plane, Linear, _>(problem, Arap, options).is_err());
     }
 }

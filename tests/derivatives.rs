@@ -144,11 +144,16 @@ fn check_energy<E: Energy<Plane>>(energy: E) {
     }
     close(
         energy.effective_stiffness([1.0, 1.0]),
-        E::REST_STIFFNESS,
+        energy.constants().rest_stiffness,
         1.0,
         0.0,
     );
-    close(energy.density([1.0, 1.0]), E::ISOMETRY, 1.0, 0.0);
+    close(
+        energy.density([1.0, 1.0]),
+        energy.constants().isometry,
+        1.0,
+        0.0,
+    );
     assert_eq!(energy.gradient([1.0, 1.0]), [0.0, 0.0]);
 }
 

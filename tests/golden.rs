@@ -220,7 +220,7 @@ fn a_mirrored_start_is_turned_back() {
             ..Default::default()
         };
         let mut solver =
-            Wrapd::<Plane, RotationAware, _>::new(problem, SymmetricDirichlet, options).unwrap();
+            Wrapd::new::<Plane, RotationAware, _>(problem, SymmetricDirichlet, options).unwrap();
         assert_eq!(solver.report().inverted, mesh.simplices.len());
         for _ in 0..100 {
             solver.step().unwrap();

@@ -2,7 +2,7 @@
 //!
 //! ψ' = 2(σᵢ − 1), ψ'' = 2; the prox is (18): z = (2 + k p)/(2 + k).
 
-use super::Energy;
+use super::{Constants, Energy};
 use crate::space::{Components, Lane, Plane, Scalar};
 
 /// As rigid as possible; an isometry has 0.
@@ -18,11 +18,15 @@ fn term<T: Scalar>(s: T) -> T {
 
 impl Energy<Plane> for Arap {
     const BARRIER: bool = false;
-    const ISOMETRY: f64 = 0.0;
-    const REST_STIFFNESS: f64 = 2.0;
-    const SCALE: f64 = 1.0;
-    const OFFSET: f64 = 0.0;
 
+    fn constants(&self) -> Constants {
+        Constants {
+            rest_stiffness: 2.0,
+            isometry: 0.0,
+            scale: 1.0,
+            offset: 0.0,
+        }
+    }
     #[inline(always)]
     fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
         term(sigma[0]) + term(sigma[1])

@@ -23,12 +23,26 @@ pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
     fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, warm: S::Sigma<L>) -> (S::Sigma<L>, u32);
     /// Does the energy need all σ > 0 (a barrier against inversion)?
     const BARRIER: bool;
-    /// ψ of an isometry.
-    const ISOMETRY: f64;
+    /// What belongs to the energy as a whole.
+    fn constants(&self) -> Constants;
+}
+
+/// Numbers of an energy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constants {
     /// The stiffness at rest, K_e(1) (21).
-    const REST_STIFFNESS: f64;
-    /// Reported energy = SCALE · Σ A (ψ − ISOMETRY) + OFFSET, for a rest shape of unit measure.
-    const SCALE: f64;
-    /// See `SCALE`: what an isometry is reported to have.
-    const OFFSET: f64;
+    pub rest_stiffness: f64,
+    /// ψ of an isometry.
+    pub isometry: f64,
+    /// Reported energy = scale · Σ A (ψ − isometry) + offset.
+    pub scale: f64,
+    /// See `scale`: what an isometry is reported to have.
+    pub offset: f64,
+}
+
+impl Constants {
+    /// The reported energy, from Σ A ψ and Σ A.
+    pub fn reported(&self, sum: f64, measure: f64) -> f64 {
+        self.scale * (sum - self.isometry * measure) + self.offset
+    }
 }

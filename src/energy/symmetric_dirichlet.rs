@@ -3,7 +3,7 @@
 //! It is a sum over the axes, so gradient, Hessian and prox are scalar problems:
 //! ψ' = 2σ − 2σ⁻³, ψ'' = 2 + 6σ⁻⁴, and the prox minimises z² + z⁻² + k/2 (z − p)² over z > 0.
 
-use super::Energy;
+use super::{Constants, Energy};
 use crate::space::{Components, Lane, Plane, Scalar};
 
 /// Symmetric Dirichlet energy; reported as ¼ Σ A (ψ − 2k) + 1, so that an isometry has 1.
@@ -15,46 +15,65 @@ pub struct SymmetricDirichlet;
 /// f is increasing and concave on z > 0. From a point left of the root Newton's method climbs to it
 /// monotonically, without overshooting; from a point right of it, it lands left of it. So the only
 /// guard needed is against landing at z ≤ 0, or so far left that the climb, which where z⁻³ rules is
-/// by a third a step, is long. With a = 2+k, q = max(−kp, 0) and x = 2/(2+q) ≤ 1 that guard is `floor`
-/// = m/2 with m = min((2/a)^¼, x^⅜): there a z ≤ m⁻³ and q ≤ 2 x⁻¹ ≤ 2 m⁻³, but 2 z⁻³ = 16 m⁻³, so it
-/// is left of the root; and since x^⅓ is about the root where q rules, it is not far.
+/// by a third a step, is long. A first step that keeps within a factor of two needs none; an element
+/// that steps further begins again from [`floor`].
 #[inline(always)]
 fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
-    let two = k.lift(2.0);
-    let a = two + k;
+    let a = k.lift(2.0) + k;
     let b = k * p;
     let zero = k.lift(0.0);
-    let mut floor = (two / a).sqrt().sqrt();
-    let pulled = b.lt(zero);
-    if b.any(pulled) {
-        // x^⅜ = x^¼ x^⅛; where nothing pulls x is 1, and the minimum what it was
-        let pull = (two / (two + (-b).max(zero))).sqrt().sqrt();
-        floor = floor.min(pull * pull.sqrt());
+    let mut z = warm;
+    let mut next = newton(a, b, z);
+    let near = (next - z).abs().lt(k.lift(0.5) * z);
+    // not near: far, or not a number
+    if k.any(zero.lt(k.select(near, zero, k))) {
+        let floor = floor(a, b);
+        let begin = warm.max(floor);
+        z = z.select(near, z, begin);
+        next = next.select(near, next, newton(a, b, begin).max(floor));
     }
-    floor = k.lift(0.5) * floor;
-    let mut z = warm.max(floor);
     // the error after a relative step of 1e-8 is of the order of its square
     let tolerance = k.lift(1e-8);
-    let (six, eight) = (k.lift(6.0), k.lift(8.0));
-    let mut count = 0;
+    let mut count = 1;
     // Quadratic convergence from the left: 60 is never reached, it only bounds the loop.
-    while count < 60 {
-        count += 1;
-        // z − f(z)/f'(z), both multiplied by z⁴: one division. Near the root b z³ = a z⁴ − 2 > −2, so
-        // the sum with 8 does not cancel
-        let z2 = z * z;
-        let z4 = z2 * z2;
-        let next = ((b * z4 + eight * z) / (a * z4 + six)).max(floor);
+    loop {
         let moving = (tolerance * z).lt((next - z).abs());
-        if !z.any(moving) {
-            z = next;
-            break;
+        if !z.any(moving) || count == 60 {
+            return (next, count);
         }
         // elements that have arrived wait for the others with their last step undone, so that they
         // take the same steps in any company
         z = z.select(moving, next, z);
+        next = newton(a, b, z);
+        count += 1;
     }
-    (z, count)
+}
+
+/// z − f(z)/f'(z) of [`axis_prox`], with b = k p.
+#[inline(always)]
+fn newton<L: Lane>(a: L, b: L, z: L) -> L {
+    // both multiplied by z⁴: one division. Near the root b z³ = a z⁴ − 2 > −2, so the sum with 8 does
+    // not cancel
+    let z2 = z * z;
+    let z4 = z2 * z2;
+    (b * z4 + a.lift(8.0) * z) / (a * z4 + a.lift(6.0))
+}
+
+/// A point left of the root of f in [`axis_prox`], and not far. With q = max(−kp, 0) and
+/// x = 2/(2+q) ≤ 1 it is m/2 for m = min((2/a)^¼, x^⅜): there a z ≤ m⁻³ and q ≤ 2 x⁻¹ ≤ 2 m⁻³, but
+/// 2 z⁻³ = 16 m⁻³, so f < 0; and x^⅓ is about the root where q rules.
+#[inline(always)]
+fn floor<L: Lane>(a: L, b: L) -> L {
+    let two = a.lift(2.0);
+    let zero = a.lift(0.0);
+    let mut least = (two / a).sqrt().sqrt();
+    let pulled = b.lt(zero);
+    if b.any(pulled) {
+        // x^⅜ = x^¼ x^⅛; where nothing pulls x is 1, and the minimum what it was
+        let pull = (two / (two + (-b).max(zero))).sqrt().sqrt();
+        least = least.min(pull * pull.sqrt());
+    }
+    a.lift(0.5) * least
 }
 
 /// One axis: σ² + σ⁻².
@@ -66,11 +85,15 @@ fn term<T: Scalar>(s: T) -> T {
 
 impl Energy<Plane> for SymmetricDirichlet {
     const BARRIER: bool = true;
-    const ISOMETRY: f64 = 4.0;
-    const REST_STIFFNESS: f64 = 8.0;
-    const SCALE: f64 = 0.25;
-    const OFFSET: f64 = 1.0;
 
+    fn constants(&self) -> Constants {
+        Constants {
+            rest_stiffness: 8.0,
+            isometry: 4.0,
+            scale: 0.25,
+            offset: 1.0,
+        }
+    }
     #[inline(always)]
     fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
         term(sigma[0]) + term(sigma[1])

@@ -74,6 +74,7 @@ pub fn total<S: Space, E: Energy<S>>(energy: E, rest: &RestShape, x: &[f64]) -> 
         smallest_sigma: f64::INFINITY,
         largest_sigma: 0.0,
     };
+    let constants = energy.constants();
     let (mut sum, mut measure) = (0.0, 0.0);
     for e in 0..rest.len() {
         let f = deformation_gradient::<S>(rest, x, e);
@@ -86,12 +87,12 @@ pub fn total<S: Space, E: Energy<S>>(energy: E, rest: &RestShape, x: &[f64]) -> 
         measure += area;
         sum += area * energy.density(sigma);
         let stress = S::from_svd(energy.gradient(sigma), frame);
-        spread::<S>(rest, e, stress, E::SCALE * area, &mut out.gradient);
+        spread::<S>(rest, e, stress, constants.scale * area, &mut out.gradient);
     }
     out.energy = if E::BARRIER && out.inverted > 0 {
         f64::INFINITY
     } else {
-        E::SCALE * (sum - E::ISOMETRY * measure) + E::OFFSET
+        constants.reported(sum, measure)
     };
     out
 }

@@ -10,8 +10,7 @@ use crate::energy::total::{deformation_gradient, distortion, spread, total};
 use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::{
-    BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
-    Stopwatch,
+    BuildError, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport, Stopwatch,
 };
 use crate::space::{Components, Space};
 use crate::wrapd::{Elimination, Problem};
@@ -28,7 +27,6 @@ pub struct ArapLocalGlobal<S> {
     report: StepReport,
     tolerance: f64,
     max_iterations: usize,
-    started: Option<Stopwatch>,
     types: PhantomData<S>,
 }
 
@@ -45,7 +43,7 @@ where
         tolerance: f64,
         max_iterations: usize,
     ) -> Result<Self, BuildError> {
-        problem.validate::<S>()?;
+        problem.validate(S::DIM, S::STRETCHES)?;
         let rest = problem.rest;
         let elimination = Elimination::new(rest, problem.start.len() / S::DIM, problem.pins);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
@@ -64,7 +62,6 @@ where
             report: StepReport::at_start(),
             tolerance,
             max_iterations,
-            started: None,
             types: PhantomData,
         };
         this.evaluate();
@@ -97,7 +94,7 @@ where
     Arap: Energy<S>,
 {
     fn step(&mut self) -> Result<StepReport, SolveError> {
-        let started = *self.started.get_or_insert_with(Stopwatch::start);
+        let begun = Stopwatch::start();
         let before = self.report.energy;
         let clock = Stopwatch::start();
         let identity = S::from_eigen(
@@ -117,7 +114,7 @@ where
                 &mut self.force,
             );
         }
-        let local = clock.milliseconds();
+        let local = Phase::new(PhaseKind::Local, 1, clock);
 
         let clock = Stopwatch::start();
         let Elimination { slot, free, .. } = &self.elimination;
@@ -132,7 +129,7 @@ where
                 self.x[v * S::DIM + i] -= self.step[s as usize * S::DIM + i];
             }
         }
-        let global = clock.milliseconds();
+        let global = Phase::new(PhaseKind::Global, 1, clock);
 
         let clock = Stopwatch::start();
         self.evaluate();
@@ -142,31 +139,11 @@ where
             let vertex = bad / S::DIM;
             return Err(SolveError::NonFinite { iteration, vertex });
         }
-        let change = (self.report.energy - before).abs();
-        self.report.status = if change < self.tolerance * self.report.energy.abs() {
-            Status::Converged(Criterion::EnergyChange)
-        } else if self.report.gradient_norm < self.tolerance {
-            Status::Converged(Criterion::GradientNorm)
-        } else if iteration >= self.max_iterations {
-            Status::MaxIterations
-        } else {
-            Status::Running
-        };
-        let evaluate = clock.milliseconds();
-        self.report.seconds = started.seconds();
-        self.report.phases.clear();
-        self.report.phases.extend(
-            [
-                (PhaseKind::Local, local),
-                (PhaseKind::Global, global),
-                (PhaseKind::Evaluate, evaluate),
-            ]
-            .map(|(kind, milliseconds)| Phase {
-                kind,
-                count: 1,
-                milliseconds,
-            }),
-        );
+        self.report
+            .settle(before, true, self.tolerance, self.max_iterations);
+        let evaluate = Phase::new(PhaseKind::Evaluate, 1, clock);
+        self.report.seconds += begun.seconds();
+        self.report.phases = vec![local, global, evaluate];
         Ok(self.report.clone())
     }
     fn positions(&self) -> &[f64] {

@@ -1,6 +1,6 @@
 //! The one object-safe interface of all iterative solvers.
 
-use super::SolveError;
+use super::{SolveError, Stopwatch};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -75,6 +75,17 @@ pub struct Phase {
     pub milliseconds: f64,
 }
 
+impl Phase {
+    /// A phase that began when `clock` was started and has just ended.
+    pub fn new(kind: PhaseKind, count: u32, clock: Stopwatch) -> Self {
+        Self {
+            kind,
+            count,
+            milliseconds: clock.milliseconds(),
+        }
+    }
+}
+
 /// What one step did. Energies are relative to an isometry as each energy's docs say.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -98,7 +109,7 @@ pub struct StepReport {
     pub lbfgs_iterations: usize,
     /// Did the element weights change in this step?
     pub reweighted: bool,
-    /// Seconds since the solver's first step began, setup apart.
+    /// Seconds spent in steps, setup and the time between steps apart.
     pub seconds: f64,
     /// The phases, in order.
     pub phases: Vec<Phase>,
@@ -120,6 +131,21 @@ impl StepReport {
             seconds: 0.0,
             phases: Vec::new(),
         }
+    }
+
+    /// Sets the status at the end of a step that began with the energy `before`: converged, if it `may`
+    /// be and |ΔE|/E or |∇E| is below `tolerance`.
+    pub fn settle(&mut self, before: f64, may: bool, tolerance: f64, max_iterations: usize) {
+        let change = (self.energy - before).abs();
+        self.status = if may && change < tolerance * self.energy.abs() {
+            Status::Converged(Criterion::EnergyChange)
+        } else if may && self.gradient_norm < tolerance {
+            Status::Converged(Criterion::GradientNorm)
+        } else if self.iteration >= max_iterations {
+            Status::MaxIterations
+        } else {
+            Status::Running
+        };
     }
 }
 

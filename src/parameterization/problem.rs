@@ -253,9 +253,9 @@ fn admm<E: Energy<Plane>>(
         ..Default::default()
     };
     Ok(match options.method {
-        Method::Wrapd | Method::RAdmm => Box::new(Wrapd::<Plane, RotationAware, E>::new(
+        Method::Wrapd | Method::RAdmm => Box::new(Wrapd::new::<Plane, RotationAware, E>(
             problem, energy, settings,
         )?),
-        _ => Box::new(Wrapd::<Plane, Linear, E>::new(problem, energy, settings)?),
+        _ => Box::new(Wrapd::new::<Plane, Linear, E>(problem, energy, settings)?),
     })
 }

@@ -120,6 +120,13 @@ impl<S: Simd> Pack<S> {
         let (head, _) = S::as_mut_simd_f64s(target);
         head[0] = self.lanes;
     }
+    /// All lanes folded into one number.
+    #[inline(always)]
+    pub fn fold(self, f: impl Fn(f64, f64) -> f64) -> f64 {
+        let mut lanes = [0.0; 8];
+        self.store(&mut lanes[..Self::WIDTH]);
+        lanes[1..Self::WIDTH].iter().fold(lanes[0], |a, &b| f(a, b))
+    }
 }
 
 macro_rules! operator {

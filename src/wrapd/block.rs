@@ -23,16 +23,14 @@ pub type Row = [f64; BLOCK];
 /// Several scalars an element, component by component.
 pub type Rows = Vec<Row>;
 
-/// State of up to [`BLOCK`] elements: component c of element e is at `[c][e]`.
+/// State of [`BLOCK`] elements, of which the last block's may be padding: component c of element e is at `[c][e]`.
 #[derive(Debug, Clone)]
 pub struct Block {
-    /// Real elements (the rest is padding).
-    pub len: usize,
     /// Vertex slots of each element: vertex v of element e is at `[v][e]`.
     pub vertices: Vec<[u32; BLOCK]>,
     /// Dm⁻¹, k×k by columns.
     pub inverse: Rows,
-    /// Rest measure A.
+    /// Rest measure A; 0 in the padding.
     pub measure: Rows,
     /// Current weight over A: k = w²/A of the prox.
     pub stiffness: Rows,
@@ -48,10 +46,6 @@ pub struct Block {
     pub sigma: Rows,
     /// ψ(Z).
     pub z_density: Rows,
-    /// ψ(F), infinite where inverted.
-    pub f_density: Rows,
-    /// Largest and smallest singular value of F (rows 0, 1).
-    pub stretch: Rows,
     /// What the last pass added up.
     pub sums: BlockSums,
 }

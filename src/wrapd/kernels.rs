@@ -30,6 +30,16 @@ pub enum Pass {
     Last,
 }
 
+impl Pass {
+    /// Numbers a corner has in the force array.
+    pub fn stride(self, dimension: usize) -> usize {
+        match self {
+            Pass::Last => 2 * dimension,
+            _ => dimension,
+        }
+    }
+}
+
 /// One pass over one block.
 pub struct Kernel<'a, S, C, E> {
     /// What to do.
@@ -38,8 +48,8 @@ pub struct Kernel<'a, S, C, E> {
     pub block: &'a mut Block,
     /// Positions, interleaved, by vertex slot.
     pub positions: &'a [f64],
-    /// Corner forces out, (v·BLOCK + e)·DIM + i: first those of the coupling, then (pass `Last`) those
-    /// of the energy.
+    /// Corner forces out, (v·BLOCK + e)·[`Pass::stride`] + i: those of the coupling, in the pass `Last`
+    /// followed by those of the energy.
     pub forces: &'a mut [f64],
     /// The energy.
     pub energy: E,
@@ -108,21 +118,18 @@ fn deformation_gradient<S: Space, V: Simd>(
     )
 }
 
-/// Spreads scale · M onto the corners: f_v = M g_v, f_0 = −Σ f_v. Corner v of element e has its DIM
-/// components side by side at (v·BLOCK + e)·DIM.
+/// The forces of scale · M on the corners: f_v = M g_v, f_0 = −Σ f_v.
 #[inline(always)]
 fn spread<S: Space, V: Simd>(
     simd: V,
     block: &Block,
     m: S::Gradient<Pack<V>>,
     scale: Pack<V>,
-    forces: &mut [f64],
     at: usize,
-) {
+) -> [[Pack<V>; 3]; 4] {
     let zero = Pack::splat(simd, 0.0);
-    let mut rest = [zero; 3];
+    let mut corners = [[zero; 3]; 4];
     for v in 0..S::STRETCHES {
-        let mut force = [zero; 3];
         for i in 0..S::DIM {
             let mut sum = zero;
             for column in 0..S::STRETCHES {
@@ -132,25 +139,36 @@ fn spread<S: Space, V: Simd>(
                 );
                 sum = sum + m.at(column * S::DIM + i) * g;
             }
-            force[i] = scale * sum;
-            rest[i] = rest[i] - force[i];
+            corners[v + 1][i] = scale * sum;
+            corners[0][i] = corners[0][i] - corners[v + 1][i];
         }
-        store_corner::<S, V>(force, forces, at, v + 1);
     }
-    store_corner::<S, V>(rest, forces, at, 0);
+    corners
 }
 
+/// Writes corner forces: K vectors a corner, side by side.
 #[inline(always)]
-fn store_corner<S: Space, V: Simd>(force: [Pack<V>; 3], forces: &mut [f64], at: usize, v: usize) {
+fn store_corners<S: Space, V: Simd, const K: usize>(
+    vectors: [[[Pack<V>; 3]; 4]; K],
+    forces: &mut [f64],
+    at: usize,
+) {
     let width = Pack::<V>::WIDTH;
-    let mut lanes = [[0.0; 8]; 3];
-    for i in 0..S::DIM {
-        force[i].store(&mut lanes[i][..width]);
-    }
-    let target = &mut forces[(v * BLOCK + at) * S::DIM..][..width * S::DIM];
-    for (lane, out) in target.chunks_exact_mut(S::DIM).enumerate() {
-        for i in 0..S::DIM {
-            out[i] = lanes[i][lane];
+    let stride = K * S::DIM;
+    for v in 0..=S::STRETCHES {
+        let mut lanes = [[[0.0; 8]; 3]; K];
+        for (lanes, vector) in lanes.iter_mut().zip(&vectors) {
+            for i in 0..S::DIM {
+                vector[v][i].store(&mut lanes[i][..width]);
+            }
+        }
+        let target = &mut forces[(v * BLOCK + at) * stride..][..width * stride];
+        for (lane, out) in target.chunks_exact_mut(stride).enumerate() {
+            for k in 0..K {
+                for i in 0..S::DIM {
+                    out[k * S::DIM + i] = lanes[k][i][lane];
+                }
+            }
         }
     }
 }
@@ -181,7 +199,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             energy,
             ..
         } = self;
-        let mut change = [0.0; BLOCK];
+        let (mut change, mut z_energy) = (RunningSums::default(), RunningSums::default());
         let mut prox_iterations = 0;
         let mut reweight = false;
         let threshold = Pack::splat(simd, threshold);
@@ -236,7 +254,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 |t, z| t - z,
             );
             let l1 = density + half_k * C::norm_squared(dual);
-            (area * (l1 - l0)).store(&mut change[at..][..Pack::<V>::WIDTH]);
+            change.add(simd, area * (l1 - l0), at);
+            z_energy.add(simd, area * density, at);
 
             let stiff = energy.effective_stiffness(sigma).max(least).min(most);
             // (23): stiff/k ≥ γ or k/stiff ≥ γ
@@ -248,7 +267,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 |z, u| z - u,
             );
             let m = C::residual(f, aux, p);
-            spread::<S, V>(simd, block, m, area * k, forces, at);
+            let force = spread::<S, V>(simd, block, m, area * k, at);
+            store_corners::<S, V, 1>([force], forces, at);
 
             store(z, &mut block.z, at);
             store(dual, &mut block.u, at);
@@ -256,10 +276,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             store([density], &mut block.z_density, at);
             store([stiff], &mut block.candidate, at);
         }
-        let n = block.len;
         BlockSums {
-            lagrangian_change: ordered_sum(change[..n].iter().copied()),
-            z_energy: ordered_sum((0..n).map(|e| block.measure[0][e] * block.z_density[0][e])),
+            lagrangian_change: change.total(),
+            z_energy: z_energy.total(),
             reweight,
             prox_iterations,
             ..Default::default()
@@ -275,7 +294,10 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             positions,
             ..
         } = self;
-        let (forces, energy_forces) = forces.split_at_mut(forces.len() / 2);
+        let mut sums = RunningSums::default();
+        let mut inverted = RunningSums::default();
+        let (zero, one) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
+        let mut extremes = [Pack::splat(simd, f64::INFINITY), zero];
         for at in packs::<V>() {
             let f = deformation_gradient::<S, V>(simd, block, positions, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
@@ -292,20 +314,31 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                     |z, u| z - u,
                 ),
             );
-            spread::<S, V>(simd, block, m, area * k, forces, at);
+            let force = spread::<S, V>(simd, block, m, area * k, at);
             store(f, &mut block.gradient, at);
-            if EVALUATE {
-                let (sigma, frame) = S::svd(f);
-                // ∂ψ/∂F = U ψ'(σ) Vᵀ
-                let stress = S::from_svd(energy.gradient(sigma), frame);
-                spread::<S, V>(simd, block, stress, area, energy_forces, at);
-                evaluate_at::<S, E, V>(block, energy, sigma, at);
+            if !EVALUATE {
+                store_corners::<S, V, 1>([force], forces, at);
+                continue;
             }
+            let (sigma, frame) = S::svd(f);
+            // ∂ψ/∂F = U ψ'(σ) Vᵀ
+            let stress = S::from_svd(energy.gradient(sigma), frame);
+            let stress = spread::<S, V>(simd, block, stress, area, at);
+            store_corners::<S, V, 2>([force, stress], forces, at);
+            // where an element is inverted the sum says nothing: it may be infinite, or, from the
+            // padding, not a number
+            sums.add(simd, area * guarded_density::<S, E, _>(energy, sigma), at);
+            let last = sigma.at(S::STRETCHES - 1);
+            extremes = [extremes[0].min(last), extremes[1].max(sigma.at(0))];
+            let folded = zero.select(zero.lt(last), zero, one);
+            inverted.add(simd, zero.select(zero.lt(area), folded, zero), at);
         }
-        if EVALUATE {
-            evaluation_sums(block)
-        } else {
-            BlockSums::default()
+        BlockSums {
+            f_energy: sums.total(),
+            inverted: inverted.total() as usize,
+            smallest: extremes[0].fold(f64::min),
+            largest: extremes[1].fold(f64::max),
+            ..Default::default()
         }
     }
 }
@@ -322,44 +355,20 @@ fn guarded_density<S: Space, E: Energy<S>, L: Lane>(energy: E, sigma: S::Sigma<L
     density.select(positive, density, density.lift(f64::INFINITY))
 }
 
-#[inline(always)]
-fn evaluate_at<S: Space, E: Energy<S>, V: Simd>(
-    block: &mut Block,
-    energy: E,
-    sigma: S::Sigma<Pack<V>>,
-    at: usize,
-) {
-    let density = guarded_density::<S, E, _>(energy, sigma);
-    store([density], &mut block.f_density, at);
-    store(
-        [sigma.at(0), sigma.at(S::STRETCHES - 1)],
-        &mut block.stretch,
-        at,
-    );
-}
+/// Eight running sums, the e-th element of a block into the (e mod 8)-th: the same at any SIMD width.
+#[derive(Default)]
+struct RunningSums([f64; 8]);
 
-fn evaluation_sums(block: &Block) -> BlockSums {
-    let n = block.len;
-    let mut sums = BlockSums {
-        f_energy: ordered_sum((0..n).map(|e| block.measure[0][e] * block.f_density[0][e])),
-        smallest: f64::INFINITY,
-        ..Default::default()
-    };
-    for e in 0..n {
-        let (largest, smallest) = (block.stretch[0][e], block.stretch[1][e]);
-        sums.largest = sums.largest.max(largest);
-        sums.smallest = sums.smallest.min(smallest);
-        sums.inverted += usize::from(!(smallest > 0.0));
+impl RunningSums {
+    #[inline(always)]
+    fn add<V: Simd>(&mut self, simd: V, value: Pack<V>, at: usize) {
+        let width = Pack::<V>::WIDTH;
+        let sums = &mut self.0[at % 8..][..width];
+        (Pack::load(simd, sums) + value).store(sums);
     }
-    sums
-}
-
-/// Sum in a fixed order, with eight running sums.
-fn ordered_sum(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sums = [0.0; 8];
-    for (i, v) in values.enumerate() {
-        sums[i % 8] += v;
+    #[inline(always)]
+    fn total(&self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
-    let [a, b, c, d, e, f, g, h] = sums;
-    ((a + e) + (c + g)) + ((b + f) + (d + h))
 }

@@ -1,10 +1,8 @@
 //! Where elements and their corners lie in memory.
 
-use super::Coupling;
 use super::block::{BLOCK, Block};
-use crate::energy::Energy;
+use super::elements::Shape;
 use crate::geometry::RestShape;
-use crate::space::{Components, Space};
 use core::array::from_fn;
 
 /// Elements in the order of their lowest slots, so that the positions a block reads and the forces a
@@ -20,12 +18,8 @@ pub fn element_order(rest: &RestShape, slot: &[u32]) -> Vec<u32> {
 }
 
 /// The elements in blocks, Z and U not set.
-pub fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
-    rest: &RestShape,
-    slot: &[u32],
-) -> Vec<Block> {
+pub fn build_blocks(rest: &RestShape, slot: &[u32], shape: &Shape) -> Vec<Block> {
     let k = rest.stretches;
-    let local = C::Local::<f64>::LEN;
     (0..rest.len())
         .step_by(BLOCK)
         .map(|begin| {
@@ -34,31 +28,35 @@ pub fn build_blocks<S: Space, C: Coupling<S>, E: Energy<S>>(
             let zeros = |count: usize| vec![[0.0; BLOCK]; count];
             let constant = |value: f64| vec![[value; BLOCK]];
             Block {
-                len,
                 vertices: (0..=k)
                     .map(|v| from_fn(|e| slot[rest.simplex(source(e))[v] as usize]))
                     .collect(),
                 inverse: (0..k * k)
                     .map(|c| from_fn(|e| rest.inverse[source(e) * k * k + c]))
                     .collect(),
-                measure: vec![from_fn(|e| rest.measure[source(e)])],
-                stiffness: constant(E::REST_STIFFNESS),
-                candidate: constant(E::REST_STIFFNESS),
-                gradient: zeros(S::Gradient::<f64>::LEN),
-                z: zeros(local),
-                u: zeros(local),
-                sigma: vec![[1.0; BLOCK]; S::STRETCHES],
+                measure: vec![from_fn(|e| {
+                    if e < len {
+                        rest.measure[begin + e]
+                    } else {
+                        0.0
+                    }
+                })],
+                stiffness: constant(shape.constants.rest_stiffness),
+                candidate: constant(shape.constants.rest_stiffness),
+                gradient: zeros(shape.gradient),
+                z: zeros(shape.local),
+                u: zeros(shape.local),
+                sigma: vec![[1.0; BLOCK]; k],
                 z_density: zeros(1),
-                f_density: zeros(1),
-                stretch: zeros(2),
                 sums: Default::default(),
             }
         })
         .collect()
 }
 
-/// For each free slot, where in the force array its corners are, by ascending element.
-pub fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u32>, Vec<u32>) {
+/// For each free slot its corners, by ascending element: vertex v of element e of a block is corner
+/// (block·(k+1) + v)·BLOCK + e.
+pub fn corner_lists(rest: &RestShape, slot: &[u32], free: usize) -> (Vec<u32>, Vec<u32>) {
     let corners = rest.stretches + 1;
     let mut begin = vec![0u32; free + 1];
     let slots = || {
@@ -76,8 +74,8 @@ pub fn corner_lists<S: Space>(rest: &RestShape, slot: &[u32], free: usize) -> (V
     let mut list = vec![0u32; begin[free] as usize];
     for (i, s) in slots() {
         let (e, v) = (i / corners, i % corners);
-        let base = ((2 * (e / BLOCK) * corners + v) * BLOCK + e % BLOCK) * S::DIM;
-        list[next[s] as usize] = base as u32;
+        let corner = ((e / BLOCK) * corners + v) * BLOCK + e % BLOCK;
+        list[next[s] as usize] = corner as u32;
         next[s] += 1;
     }
     (begin, list)

@@ -11,6 +11,7 @@
 
 mod block;
 mod coupling;
+mod elements;
 mod elimination;
 mod kernels;
 mod layout;

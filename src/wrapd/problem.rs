@@ -2,7 +2,6 @@
 
 use crate::geometry::RestShape;
 use crate::optim::BuildError;
-use crate::space::Space;
 
 /// What to solve: rest shapes, a start, and vertices held where they start.
 #[derive(Debug, Clone, Copy)]
@@ -17,10 +16,10 @@ pub struct Problem<'a> {
 
 impl Problem<'_> {
     /// Checks that the parts fit together.
-    pub fn validate<S: Space>(&self) -> Result<(), BuildError> {
+    pub fn validate(&self, dimension: usize, stretches: usize) -> Result<(), BuildError> {
         let problem = self;
         let (rest, start) = (problem.rest, problem.start);
-        let n = start.len() / S::DIM;
+        let n = start.len() / dimension;
         let wrong = |argument, expected, found| {
             Err(BuildError::WrongLength {
                 argument,
@@ -28,23 +27,23 @@ impl Problem<'_> {
                 found,
             })
         };
-        if start.len() != n * S::DIM {
-            return wrong("start", n * S::DIM, start.len());
+        if start.len() != n * dimension {
+            return wrong("start", n * dimension, start.len());
         }
-        if rest.stretches != S::STRETCHES {
-            return wrong("rest.stretches", S::STRETCHES, rest.stretches);
+        if rest.stretches != stretches {
+            return wrong("rest.stretches", stretches, rest.stretches);
         }
-        let corners = rest.len() * (S::STRETCHES + 1);
+        let corners = rest.len() * (stretches + 1);
         if rest.vertices.len() != corners {
             return wrong("rest.vertices", corners, rest.vertices.len());
         }
-        let entries = rest.len() * S::STRETCHES * S::STRETCHES;
+        let entries = rest.len() * stretches * stretches;
         if rest.inverse.len() != entries {
             return wrong("rest.inverse", entries, rest.inverse.len());
         }
         let highest = rest.vertices.iter().max().map_or(0, |&v| v as usize);
         if highest >= n {
-            return wrong("start", (highest + 1) * S::DIM, start.len());
+            return wrong("start", (highest + 1) * dimension, start.len());
         }
         if rest.is_empty() {
             return Err(BuildError::InvalidOption {
@@ -60,7 +59,7 @@ impl Problem<'_> {
         if let Some(bad) = start.iter().position(|x| !x.is_finite()) {
             return Err(BuildError::InvalidOption {
                 option: "start",
-                what: format!("vertex {} is not finite", bad / S::DIM),
+                what: format!("vertex {} is not finite", bad / dimension),
             });
         }
         if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {

@@ -1,37 +1,30 @@
 //! The iteration of algorithm 1.
 
 use super::block::{BLOCK, Block, BlockSums};
-use super::kernels::{Kernel, Pass};
+use super::elements::{Elements, Model, Shape};
+use super::kernels::Pass;
 use super::layout::{build_blocks, corner_lists, element_order};
 use super::{Coupling, Elimination, Problem, WrapdOptions};
 use crate::energy::Energy;
-use crate::energy::total::relative_distortion;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
-    BuildError, Criterion, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport,
-    Stopwatch,
+    BuildError, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport, Stopwatch,
 };
 use crate::parallel;
-use crate::space::{Space, dispatch};
-use core::marker::PhantomData;
+use crate::space::Space;
 
-/// Which corner forces to add up.
-#[derive(Clone, Copy)]
-enum Forces {
-    /// The gradient of (11), into `gradient`.
-    Coupling,
-    /// The same, into `next_gradient`.
-    NextCoupling,
-    /// The gradient of the energy, into `direction`.
-    Energy,
-}
+/// Vertices that are gathered as one piece of work.
+const VERTICES: usize = 1024;
 
-/// ADMM on a splitting of F: WRAPD and its relatives, by coupling `C` and energy `E`.
-pub struct Wrapd<S: Space, C, E> {
+/// ADMM on a splitting of F: WRAPD and its relatives, by coupling and energy.
+pub struct Wrapd {
     options: WrapdOptions,
-    energy: E,
+    shape: Shape,
+    elements: Box<dyn Elements>,
+    /// Σ A.
+    measure: f64,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
     /// The element at each place of the blocks.
@@ -46,6 +39,8 @@ pub struct Wrapd<S: Space, C, E> {
     positions: Vec<f64>,
     gradient: Vec<f64>,
     next_gradient: Vec<f64>,
+    /// Squares of the energy's gradient, summed a chunk of [`VERTICES`].
+    squares: Vec<f64>,
     direction: Vec<f64>,
     matrix: WeightedSum,
     factor: Cholesky,
@@ -55,46 +50,62 @@ pub struct Wrapd<S: Space, C, E> {
     delay: usize,
     /// No flips at the previous iterate?
     was_injective: bool,
-    started: Option<Stopwatch>,
-    types: PhantomData<(S, C)>,
 }
 
-impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
+impl Wrapd {
     /// Analyses, factors and evaluates the start; all allocation happens here.
     ///
     /// # Errors
     /// Lengths that do not fit, options out of range, a start that is not finite, no pin.
-    pub fn new(problem: Problem, energy: E, options: WrapdOptions) -> Result<Self, BuildError> {
+    pub fn new<S: Space, C: Coupling<S>, E: Energy<S>>(
+        problem: Problem,
+        energy: E,
+        options: WrapdOptions,
+    ) -> Result<Self, BuildError> {
+        let shape = Shape::of::<S, C, E>(&energy);
+        let elements = Box::new(Model::<S, C, E>::new(energy));
+        parallel::in_pool(|| Self::build(problem, shape, elements, options))
+    }
+
+    fn build(
+        problem: Problem,
+        shape: Shape,
+        elements: Box<dyn Elements>,
+        options: WrapdOptions,
+    ) -> Result<Self, BuildError> {
         options.validate()?;
         let rest = problem.rest;
-        let n = problem.start.len() / S::DIM;
-        problem.validate::<S>()?;
+        let dimension = shape.dimension;
+        let n = problem.start.len() / dimension;
+        problem.validate(dimension, shape.stretches)?;
 
         let elimination = Elimination::new(rest, n, problem.pins);
         // from here on elements are in the order of their vertices' slots
         let order = element_order(rest, &elimination.slot);
         let rest = &rest.reordered(&order);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
-        matrix.fill(|_| E::REST_STIFFNESS);
+        matrix.fill(|_| shape.constants.rest_stiffness);
         let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
         let Elimination { slot, free, .. } = elimination;
-        let blocks = build_blocks::<S, C, E>(rest, &slot);
+        let blocks = build_blocks(rest, &slot, &shape);
         // forces of the coupling, then those of the energy
-        let corners_per_block = 2 * (rest.stretches + 1) * S::DIM * BLOCK;
-        let (corner_begin, corners) = corner_lists::<S>(rest, &slot, free);
+        let corners_per_block = 2 * (rest.stretches + 1) * dimension * BLOCK;
+        let (corner_begin, corners) = corner_lists(rest, &slot, free);
         let mut x = vec![0.0; problem.start.len()];
         for (v, &s) in slot.iter().enumerate() {
-            let s = s as usize * S::DIM;
-            x[s..s + S::DIM].copy_from_slice(&problem.start[v * S::DIM..(v + 1) * S::DIM]);
+            let s = s as usize * dimension;
+            x[s..s + dimension].copy_from_slice(&problem.start[v * dimension..(v + 1) * dimension]);
         }
-        let unknowns = free * S::DIM;
+        let unknowns = free * dimension;
         let mut this = Self {
             options,
-            energy,
+            shape,
+            elements,
+            measure: rest.measure.iter().sum(),
             slot,
             order,
             forces: vec![0.0; corners_per_block * blocks.len()],
@@ -105,6 +116,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             positions: problem.start.to_vec(),
             gradient: vec![0.0; unknowns],
             next_gradient: vec![0.0; unknowns],
+            squares: vec![0.0; free.div_ceil(VERTICES)],
             direction: vec![0.0; unknowns],
             matrix,
             factor,
@@ -112,13 +124,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             report: StepReport::at_start(),
             delay: 0,
             was_injective: false,
-            started: None,
-            types: PhantomData,
         };
         let sums = this.pass(Pass::Last);
-        this.gather_gradient_norm();
+        this.gather(Pass::Last);
         this.evaluate(sums);
-        if E::BARRIER && this.report.inverted > 0 {
+        if shape.barrier && this.report.inverted > 0 {
             // there is no Z yet whose energy could stand in
             this.report.energy = f64::INFINITY;
         }
@@ -135,21 +145,14 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
 
     /// Runs one element pass over all blocks and adds up, in the blocks' order.
     fn pass(&mut self, pass: Pass) -> BlockSums {
-        let chunk = self.forces.len() / self.blocks.len().max(1);
-        let (x, energy) = (&self.x, self.energy);
+        let chunk = self.block_forces(pass);
+        let (x, elements, blocks) = (&self.x, &*self.elements, self.blocks.len());
         parallel::for_each_block(
             &mut self.blocks,
-            &mut self.forces,
+            &mut self.forces[..chunk * blocks],
             chunk,
             |_, block, forces| {
-                block.sums = dispatch(Kernel::<S, C, E> {
-                    pass,
-                    block,
-                    positions: x,
-                    forces,
-                    energy,
-                    types: PhantomData,
-                });
+                block.sums = elements.pass(pass, block, x, forces);
             },
         );
         let mut total = BlockSums {
@@ -169,76 +172,82 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
         total
     }
 
-    /// Adds the corner forces up at the free vertices.
-    fn gather(&mut self, what: Forces) {
-        const VERTICES: usize = 1024;
-        let (offset, gradient) = match what {
-            Forces::Coupling => (0, &mut self.gradient),
-            Forces::NextCoupling => (0, &mut self.next_gradient),
-            // the direction has served its purpose by then
-            Forces::Energy => (
-                self.forces.len() / self.blocks.len() / 2,
-                &mut self.direction,
-            ),
-        };
-        let (forces, begin, corners) = (&self.forces, &self.corner_begin, &self.corners);
-        parallel::for_each_chunk(gradient, VERTICES * S::DIM, |chunk, out| {
-            for (local, g) in out.chunks_exact_mut(S::DIM).enumerate() {
-                let v = chunk * VERTICES + local;
-                let range = begin[v] as usize..begin[v + 1] as usize;
-                let mut sum = [0.0; 3];
-                for &corner in &corners[range] {
-                    let force = &forces[corner as usize + offset..][..S::DIM];
-                    for i in 0..S::DIM {
-                        sum[i] += force[i];
-                    }
-                }
-                g.copy_from_slice(&sum[..S::DIM]);
-            }
-        });
+    /// Length of a block's part of the force array in a pass.
+    fn block_forces(&self, pass: Pass) -> usize {
+        (self.shape.stretches + 1) * BLOCK * pass.stride(self.shape.dimension)
     }
 
-    /// After a `Last` pass: the norm of the reported energy's gradient.
-    fn gather_gradient_norm(&mut self) {
-        self.gather(Forces::Energy);
-        let squared = dot(&self.direction, &self.direction);
-        self.report.gradient_norm = E::SCALE * squared.sqrt();
+    /// Adds the corner forces of the last pass up at the free vertices, into `next_gradient`. After a
+    /// `Last` pass the norm of the energy's gradient goes into the report.
+    fn gather(&mut self, pass: Pass) {
+        match (self.shape.dimension, pass) {
+            (2, Pass::Last) => self.gather_in::<2, 4>(),
+            (2, _) => self.gather_in::<2, 2>(),
+            (_, Pass::Last) => self.gather_in::<3, 6>(),
+            (..) => self.gather_in::<3, 3>(),
+        }
+    }
+
+    fn gather_in<const DIM: usize, const STRIDE: usize>(&mut self) {
+        let forces = self.forces.as_chunks::<STRIDE>().0;
+        let (begin, corners) = (&self.corner_begin, &self.corners);
+        parallel::for_each_block(
+            &mut self.squares,
+            &mut self.next_gradient,
+            VERTICES * DIM,
+            |chunk, squares, out| {
+                *squares = 0.0;
+                for (local, g) in out.as_chunks_mut::<DIM>().0.iter_mut().enumerate() {
+                    let v = chunk * VERTICES + local;
+                    let mut sum = [0.0; STRIDE];
+                    for &corner in &corners[begin[v] as usize..begin[v + 1] as usize] {
+                        for (sum, force) in sum.iter_mut().zip(&forces[corner as usize]) {
+                            *sum += force;
+                        }
+                    }
+                    g.copy_from_slice(&sum[..DIM]);
+                    for energy in &sum[DIM..] {
+                        *squares += energy * energy;
+                    }
+                }
+            },
+        );
+        if STRIDE > DIM {
+            let squared: f64 = self.squares.iter().sum();
+            self.report.gradient_norm = self.shape.constants.scale * squared.sqrt();
+        }
     }
 
     /// Fills the report from the sums of an evaluation.
     fn evaluate(&mut self, sums: BlockSums) {
-        let measure: f64 = self
-            .blocks
-            .iter()
-            .map(|b| b.measure[0][..b.len].iter().sum::<f64>())
-            .sum();
-        let reported = |sum: f64| E::SCALE * (sum - E::ISOMETRY * measure) + E::OFFSET;
         self.report.inverted = sums.inverted;
         self.report.smallest_sigma = sums.smallest;
         self.report.largest_sigma = sums.largest;
-        let barrier_broken = E::BARRIER && sums.inverted > 0;
-        self.report.energy = reported(if barrier_broken {
+        let barrier_broken = self.shape.barrier && sums.inverted > 0;
+        let sum = if barrier_broken {
             sums.z_energy
         } else {
             sums.f_energy
-        });
+        };
+        self.report.energy = self.shape.constants.reported(sum, self.measure);
         if barrier_broken {
             self.report.gradient_norm = f64::INFINITY;
         }
     }
 
     /// The global step: L-BFGS on (11) until (17). Returns its iterations and the final evaluation.
-    fn global_step(&mut self, local: &BlockSums) -> (usize, BlockSums) {
+    fn global_step(&mut self, local_pass: Pass, local: &BlockSums) -> (usize, BlockSums) {
         // below the rounding error of the Lagrangian there is nothing to be gained
         let rounding = f64::EPSILON * local.z_energy.abs();
-        let bound = (S::KAPPA * local.lagrangian_change.abs()).max(rounding);
-        self.gather(Forces::Coupling);
+        let bound = (self.shape.kappa * local.lagrangian_change.abs()).max(rounding);
+        self.gather(local_pass);
+        core::mem::swap(&mut self.gradient, &mut self.next_gradient);
         self.history.new_objective();
         let mut count = 0;
         loop {
             let mut slope = self.history.direction(
                 &mut self.factor,
-                S::DIM,
+                self.shape.dimension,
                 &self.gradient,
                 &mut self.direction,
             );
@@ -257,11 +266,13 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
                 &mut self.x[..unknowns],
             );
             count += 1;
-            let last =
-                C::LINEAR || !(-slope > bound) || count >= self.options.max_global_iterations;
-            let sums = self.pass(if last { Pass::Last } else { Pass::Forces });
-            if !C::LINEAR {
-                self.gather(Forces::NextCoupling);
+            let last = self.shape.linear
+                || !(-slope > bound)
+                || count >= self.options.max_global_iterations;
+            let pass = if last { Pass::Last } else { Pass::Forces };
+            let sums = self.pass(pass);
+            self.gather(pass);
+            if !self.shape.linear {
                 if !uphill {
                     self.history
                         .push(&self.direction, &self.gradient, &self.next_gradient);
@@ -290,7 +301,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 
     fn iterate(&mut self) -> Result<(), SolveError> {
-        let started = *self.started.get_or_insert_with(Stopwatch::start);
+        let begun = Stopwatch::start();
+        let dimension = self.shape.dimension;
         let k = self.report.iteration;
         let before = self.report.energy;
 
@@ -299,41 +311,30 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             Some(r) if k >= self.delay => [r.least, r.most_at(k + 1 - self.delay)],
             _ => [1.0, 1.0],
         }
-        .map(|beta| beta * E::REST_STIFFNESS);
+        .map(|beta| beta * self.shape.constants.rest_stiffness);
         let reset = k == 0 || (k == 1 && self.options.restart_duals);
         let threshold = self
             .options
             .reweighting
             .map_or(f64::INFINITY, |r| r.threshold);
-        let local = self.pass(Pass::Local {
+        let pass = Pass::Local {
             clamp,
             threshold,
             reset,
-        });
-        let local_phase = Phase {
-            kind: PhaseKind::Local,
-            count: local.prox_iterations,
-            milliseconds: clock.milliseconds(),
         };
+        let local = self.pass(pass);
+        let local_phase = Phase::new(PhaseKind::Local, local.prox_iterations, clock);
 
         let clock = Stopwatch::start();
-        let (count, mut sums) = self.global_step(&local);
-        let global_phase = Phase {
-            kind: PhaseKind::Global,
-            count: count as u32,
-            milliseconds: clock.milliseconds(),
-        };
+        let (count, mut sums) = self.global_step(pass, &local);
+        let global_phase = Phase::new(PhaseKind::Global, count as u32, clock);
 
         let clock = Stopwatch::start();
         let reweighted = local.reweight;
         if reweighted {
             self.reweight(k + 1)?;
         }
-        let reweight_phase = Phase {
-            kind: PhaseKind::Reweight,
-            count: u32::from(reweighted),
-            milliseconds: clock.milliseconds(),
-        };
+        let reweight_phase = Phase::new(PhaseKind::Reweight, u32::from(reweighted), clock);
 
         let clock = Stopwatch::start();
         sums.z_energy = local.z_energy;
@@ -341,7 +342,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             let vertex = self
                 .slot
                 .iter()
-                .position(|&s| s as usize == slot / S::DIM)
+                .position(|&s| s as usize == slot / dimension)
                 .unwrap_or(0);
             return Err(SolveError::NonFinite {
                 iteration: k + 1,
@@ -349,34 +350,24 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
             });
         }
         for (v, &s) in self.slot.iter().enumerate() {
-            let s = s as usize * S::DIM;
-            self.positions[v * S::DIM..(v + 1) * S::DIM].copy_from_slice(&self.x[s..s + S::DIM]);
+            let s = s as usize * dimension;
+            self.positions[v * dimension..(v + 1) * dimension]
+                .copy_from_slice(&self.x[s..s + dimension]);
         }
-        self.gather_gradient_norm();
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
-        let change = (self.report.energy - before).abs();
-        let tolerance = self.options.tolerance;
         self.report.iteration = k + 1;
-        self.report.lbfgs_iterations = if C::LINEAR { 0 } else { count };
+        self.report.lbfgs_iterations = if self.shape.linear { 0 } else { count };
         self.report.reweighted = reweighted;
-        self.report.status =
-            if injective && self.was_injective && change < tolerance * self.report.energy.abs() {
-                Status::Converged(Criterion::EnergyChange)
-            } else if injective && self.was_injective && self.report.gradient_norm < tolerance {
-                Status::Converged(Criterion::GradientNorm)
-            } else if self.report.iteration >= self.options.max_iterations {
-                Status::MaxIterations
-            } else {
-                Status::Running
-            };
+        self.report.settle(
+            before,
+            injective && self.was_injective,
+            self.options.tolerance,
+            self.options.max_iterations,
+        );
         self.was_injective = injective;
-        self.report.seconds = started.seconds();
-        let evaluate_phase = Phase {
-            kind: PhaseKind::Evaluate,
-            count: 1,
-            milliseconds: clock.milliseconds(),
-        };
+        self.report.seconds += begun.seconds();
+        let evaluate_phase = Phase::new(PhaseKind::Evaluate, 1, clock);
         self.report.phases.clear();
         self.report
             .phases
@@ -390,16 +381,16 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Wrapd<S, C, E> {
     }
 }
 
-impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
+impl Solver for Wrapd {
     fn step(&mut self) -> Result<StepReport, SolveError> {
-        self.iterate()?;
+        parallel::in_pool(|| self.iterate())?;
         Ok(self.report.clone())
     }
     fn positions(&self) -> &[f64] {
         &self.positions
     }
     fn dimension(&self) -> usize {
-        S::DIM
+        self.shape.dimension
     }
     fn status(&self) -> Status {
         self.report.status
@@ -415,10 +406,9 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Solver for Wrapd<S, C, E> {
         };
         for (place, &element) in self.order.iter().enumerate() {
             let (block, e) = (&self.blocks[place / BLOCK], place % BLOCK);
-            let (largest, smallest) = (block.stretch[0][e], block.stretch[1][e]);
-            inspection.distortion[element as usize] = relative_distortion(&[largest, smallest]);
+            inspection.distortion[element as usize] = self.elements.distortion(block, e);
             inspection.weights[element as usize] =
-                (block.stiffness[0][e] / E::REST_STIFFNESS) as f32;
+                (block.stiffness[0][e] / self.shape.constants.rest_stiffness) as f32;
         }
         inspection
     }

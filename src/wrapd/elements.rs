@@ -1,0 +1,101 @@
+//! The element loops of a space, a coupling and an energy behind one call a block, so that the solver
+//! itself is compiled once.
+
+use super::Coupling;
+use super::block::{Block, BlockSums};
+use super::kernels::{Kernel, Pass};
+use crate::energy::total::relative_distortion;
+use crate::energy::{Constants, Energy};
+use crate::space::{Components, Space, dispatch};
+use core::marker::PhantomData;
+
+/// What the solver knows of its types.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    /// d.
+    pub dimension: usize,
+    /// k.
+    pub stretches: usize,
+    /// Components of F.
+    pub gradient: usize,
+    /// Components of Z.
+    pub local: usize,
+    /// κ of (17).
+    pub kappa: f64,
+    /// Is the global step a single linear solve?
+    pub linear: bool,
+    /// Is the energy infinite where an element is inverted?
+    pub barrier: bool,
+    /// Numbers of the energy.
+    pub constants: Constants,
+}
+
+impl Shape {
+    /// Of these types.
+    pub fn of<S: Space, C: Coupling<S>, E: Energy<S>>(energy: &E) -> Self {
+        Self {
+            dimension: S::DIM,
+            stretches: S::STRETCHES,
+            gradient: S::Gradient::<f64>::LEN,
+            local: C::Local::<f64>::LEN,
+            kappa: S::KAPPA,
+            linear: C::LINEAR,
+            barrier: E::BARRIER,
+            constants: energy.constants(),
+        }
+    }
+}
+
+/// Element loops.
+pub trait Elements: Send + Sync {
+    /// One pass over one block; arguments as those of [`Kernel`].
+    fn pass(
+        &self,
+        pass: Pass,
+        block: &mut Block,
+        positions: &[f64],
+        forces: &mut [f64],
+    ) -> BlockSums;
+    /// The symmetric Dirichlet density of an element at the newest F, relative to an isometry's.
+    fn distortion(&self, block: &Block, element: usize) -> f32;
+}
+
+/// An energy on a splitting of F.
+pub struct Model<S, C, E> {
+    energy: E,
+    types: PhantomData<(S, C)>,
+}
+
+impl<S, C, E> Model<S, C, E> {
+    /// Of this energy.
+    pub fn new(energy: E) -> Self {
+        Self {
+            energy,
+            types: PhantomData,
+        }
+    }
+}
+
+impl<S: Space, C: Coupling<S>, E: Energy<S>> Elements for Model<S, C, E> {
+    fn pass(
+        &self,
+        pass: Pass,
+        block: &mut Block,
+        positions: &[f64],
+        forces: &mut [f64],
+    ) -> BlockSums {
+        dispatch(Kernel::<S, C, E> {
+            pass,
+            block,
+            positions,
+            forces,
+            energy: self.energy,
+            types: PhantomData,
+        })
+    }
+    fn distortion(&self, block: &Block, element: usize) -> f32 {
+        let f = S::Gradient::from_fn(|c| block.gradient[c][element]);
+        let (sigma, _) = S::svd::<f64>(f);
+        relative_distortion(sigma.as_slice())
+    }
+}
