@@ -15,7 +15,7 @@ pub struct SymmetricDirichlet;
 /// f is increasing and concave on z > 0. From a point left of the root Newton's method climbs to it
 /// monotonically, without overshooting; from a point right of it, it lands left of it. So the only
 /// guard needed is against landing at z ≤ 0, or so far left that the climb, which where z⁻³ rules is
-/// by a third a step, is long. A first step that keeps within a factor of two needs none; an element
+/// by a third a step, is long. A first step of less than a quarter needs none; an element
 /// that steps further begins again from [`floor`].
 #[inline(always)]
 fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
@@ -24,7 +24,7 @@ fn axis_prox<L: Lane>(p: L, k: L, warm: L) -> (L, u32) {
     let zero = k.lift(0.0);
     let mut z = warm;
     let mut next = newton(a, b, z);
-    let near = (next - z).abs().lt(k.lift(0.5) * z);
+    let near = (next - z).abs().lt(k.lift(0.25) * z);
     // not near: far, or not a number
     if k.any(zero.lt(k.select(near, zero, k))) {
         let floor = floor(a, b);
