@@ -1,7 +1,7 @@
 //! Harmonic maps with the boundary on a circle.
 
 use super::boundary_to_circle;
-use crate::geometry::{RestShape, cotangent_weights, uniform_weights};
+use crate::geometry::{Elimination, RestShape, cotangent_weights, uniform_weights};
 use crate::linalg::{Cholesky, SymmetricAssembly};
 use crate::mesh::SurfaceMesh;
 use crate::optim::BuildError;
@@ -36,29 +36,11 @@ fn weighted(
 ) -> Result<Vec<DVec2>, BuildError> {
     let n = mesh.positions.len();
     let mut map = vec![DVec2::ZERO; n];
-    const FIXED: u32 = u32::MAX;
-    let mut unknown = vec![0u32; n];
     for (&v, p) in boundary.iter().zip(boundary_to_circle(mesh, boundary)) {
         map[v as usize] = p;
-        unknown[v as usize] = FIXED;
     }
-    let free: Vec<u32> = (0..n as u32)
-        .filter(|&v| unknown[v as usize] != FIXED)
-        .collect();
-    for (k, &v) in free.iter().enumerate() {
-        unknown[v as usize] = k as u32;
-    }
-    let order = {
-        let unknown = &unknown;
-        Cholesky::order(
-            free.len(),
-            rest.pairs()
-                .map(|(a, b, _)| (unknown[a as usize], unknown[b as usize])),
-        )
-    };
-    for (k, &first) in order.unknowns.iter().enumerate() {
-        unknown[free[first as usize] as usize] = k as u32;
-    }
+    let Elimination { slot, free, levels } = Elimination::new(rest, n, boundary);
+    let is_free = |slot: u32| (slot as usize) < free;
 
     // each edge of each element: both diagonals and the off-diagonal entry
     let edges: Vec<(u32, u32, f64)> = rest
@@ -70,31 +52,30 @@ fn weighted(
     let entries: Vec<(u32, u32, f64)> = edges
         .iter()
         .flat_map(|&(a, b, w)| {
-            let (a, b) = (unknown[a as usize], unknown[b as usize]);
+            let (a, b) = (slot[a as usize], slot[b as usize]);
             [(a, a, w), (b, b, w), (a, b, -w)]
         })
         .collect();
-    let mut rhs = vec![0.0; 2 * free.len()];
+    let mut rhs = vec![0.0; 2 * free];
     for &(a, b, w) in &edges {
         for (inner, outer) in [(a, b), (b, a)] {
-            let row = unknown[inner as usize];
-            if row != FIXED && unknown[outer as usize] == FIXED {
+            let row = slot[inner as usize];
+            if is_free(row) && !is_free(slot[outer as usize]) {
                 let p = map[outer as usize];
                 rhs[2 * row as usize] += w * p.x;
                 rhs[2 * row as usize + 1] += w * p.y;
             }
         }
     }
-    let mut assembly = SymmetricAssembly::new(free.len(), entries.iter().map(|e| (e.0, e.1)));
+    let mut assembly = SymmetricAssembly::new(free, entries.iter().map(|e| (e.0, e.1)));
     assembly.fill(|c| entries[c].2);
-    let mut factor = Cholesky::analyze(assembly.matrix(), &order.parts)?;
+    let mut factor = Cholesky::analyze(assembly.matrix(), &levels)?;
     factor
         .factorize(assembly.matrix())
         .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
     factor.solve_in_place(&mut rhs, 2);
-    for &v in &free {
-        let row = unknown[v as usize] as usize;
-        map[v as usize] = DVec2::new(rhs[2 * row], rhs[2 * row + 1]);
+    for (p, &row) in map.iter_mut().zip(&slot).filter(|&(_, &row)| is_free(row)) {
+        *p = DVec2::new(rhs[2 * row as usize], rhs[2 * row as usize + 1]);
     }
     Ok(map)
 }

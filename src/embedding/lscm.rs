@@ -5,11 +5,11 @@
 //! Hermitian form H_uv = Σ A Ḡ_u G_v, here as the real symmetric matrix of twice the size, with two
 //! vertices fixed against similarities.
 
+use crate::geometry::Elimination;
 use crate::geometry::RestShape;
 use crate::linalg::{Cholesky, SymmetricAssembly};
 use crate::mesh::SurfaceMesh;
 use crate::optim::BuildError;
-use crate::wrapd::Elimination;
 use glam::DVec2;
 
 /// The least squares conformal map with two far vertices of the boundary fixed, scaled to unit area.
@@ -29,7 +29,7 @@ pub fn lscm(
     };
     let first = farthest(boundary[0]);
     let second = farthest(first);
-    let Elimination { slot, free, parts } = Elimination::new(rest, n, &[first, second]);
+    let Elimination { slot, free, levels } = Elimination::new(rest, n, &[first, second]);
     let fixed = |v: u32| match v {
         _ if v == first => Some(DVec2::ZERO),
         _ if v == second => Some(DVec2::X),
@@ -74,8 +74,9 @@ pub fn lscm(
     let mut assembly = SymmetricAssembly::new(2 * free, entries.iter().map(|e| (e.0, e.1)));
     assembly.fill(|c| entries[c].2);
     // two unknowns a vertex
-    let parts: Vec<usize> = parts.iter().map(|p| 2 * p).collect();
-    let mut factor = Cholesky::analyze(assembly.matrix(), &parts)?;
+    let double = |ends: Vec<usize>| ends.iter().map(|end| 2 * end).collect();
+    let levels: Vec<Vec<usize>> = levels.into_iter().map(double).collect();
+    let mut factor = Cholesky::analyze(assembly.matrix(), &levels)?;
     factor
         .factorize(assembly.matrix())
         .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

@@ -1,38 +1,24 @@
 //! Sparse Cholesky: faer behind one small type.
 //!
-//! The unknowns are expected in elimination order already ([`Cholesky::order`] gives it), so that no
+//! The unknowns are expected in elimination order already ([`super::Order`] gives it), so that no
 //! solve permutes. The factor is computed by supernodes, which is fastest to refactor, and copied
 //! without their padding zeros into plain columns, which is fastest to solve with when, as on
 //! surfaces, supernodes are small.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, supernodal,
 };
-use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 use nalgebra_sparse::CscMatrix;
 
-use super::EliminationTree;
 use super::panels::Panels;
 use super::triangular::Factor;
 use crate::optim::BuildError;
 use crate::parallel;
-
-/// An order of elimination.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Order {
-    /// `unknowns[k]` is eliminated k-th.
-    pub unknowns: Vec<u32>,
-    /// Ends of the parts that know nothing of each other; what comes after the last is their common
-    /// top.
-    pub parts: Vec<usize>,
-}
-
-/// Parts the elimination tree is split into: enough for the threads a browser gives.
-const PARTS: usize = 8;
 
 /// A pivot was not positive: the matrix is not positive definite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,64 +41,21 @@ pub struct Cholesky {
     /// Reciprocal diagonal, and where it is in `values`.
     inverse_diagonal: Vec<f64>,
     diagonal: Vec<u32>,
-    /// Ends of the independent parts.
-    parts: Vec<usize>,
-    /// What each part adds to the top in a solve: room for three right-hand sides.
-    to_top: Vec<f64>,
+    /// What the parts add to later levels in a solve: room for three right-hand sides.
+    work: Vec<f64>,
 }
 
 /// The most bytes a factor may take: what a 32-bit address space can give.
 const MEMORY_LIMIT: u64 = 1 << 31;
 
 impl Cholesky {
-    /// The fill-reducing elimination order (approximate minimum degree, Amestoy et al. 1996) of a
-    /// symmetric pattern given by its edges, with independent parts first.
-    pub fn order(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Order {
-        let assembly = super::SymmetricAssembly::new(n, edges.clone());
-        let pattern = assembly.matrix().pattern();
-        let symbolic = SymbolicSparseColMatRef::new_checked(
-            n,
-            n,
-            pattern.major_offsets(),
-            None,
-            pattern.minor_indices(),
-        );
-        let mut forward = vec![0usize; n];
-        let mut inverse = vec![0usize; n];
-        let scratch = amd::order_scratch::<usize>(n, pattern.nnz());
-        let mut buffer = MemBuffer::new(scratch);
-        let ordered = amd::order(
-            &mut forward,
-            &mut inverse,
-            symbolic,
-            amd::Control::default(),
-            MemStack::new(&mut buffer),
-        );
-        // only an index overflow can fail here, and 32-bit meshes cannot cause one
-        if ordered.is_err() {
-            forward = (0..n).collect();
-            inverse = forward.clone();
-        }
-        let relabelled = edges
-            .filter(|&(i, j)| (i as usize) < n && (j as usize) < n)
-            .map(|(i, j)| (inverse[i as usize] as u32, inverse[j as usize] as u32));
-        let upper = super::SymmetricAssembly::new(n, relabelled)
-            .matrix()
-            .transpose();
-        let (order, parts) = EliminationTree::new(&upper).split(&upper, PARTS);
-        Order {
-            unknowns: order.iter().map(|&k| forward[k as usize] as u32).collect(),
-            parts,
-        }
-    }
-
     /// Analyses the pattern of `lower` (lower triangle, unknowns in elimination order).
     ///
-    /// `parts` are those of the order (or empty).
+    /// `levels` are those of the order (or empty).
     ///
     /// # Errors
     /// `TooLarge` before the factor is allocated, if a 32-bit memory cannot hold it.
-    pub fn analyze(lower: &CscMatrix<f64>, parts: &[usize]) -> Result<Self, BuildError> {
+    pub fn analyze(lower: &CscMatrix<f64>, levels: &[Vec<usize>]) -> Result<Self, BuildError> {
         let n = lower.ncols();
         // faer analyses upper triangles: the transpose of ours
         let upper = lower.transpose();
@@ -146,7 +89,7 @@ impl Cholesky {
             ),
         };
         let blocks = vec![0.0; symbolic.len_val() + 1];
-        let panels = Panels::new(&upper, parts);
+        let panels = Panels::new(&upper, levels);
         let source = sources(&symbolic, &panels);
         let diagonal = panels.diagonal();
         Ok(Self {
@@ -157,8 +100,7 @@ impl Cholesky {
             source,
             inverse_diagonal: vec![0.0; n],
             diagonal,
-            parts: parts.to_vec(),
-            to_top: vec![0.0; 3 * parts.len() * (n - parts.last().copied().unwrap_or(n))],
+            work: vec![0.0; 3 * panels.work()],
             panels,
         })
     }
@@ -223,12 +165,11 @@ impl Cholesky {
             panels: &self.panels,
             values: &self.values,
             inverse_diagonal: &self.inverse_diagonal,
-            parts: &self.parts,
         };
         match columns {
-            1 => factor.solve::<1>(x.as_chunks_mut().0, &mut self.to_top),
-            2 => factor.solve::<2>(x.as_chunks_mut().0, &mut self.to_top),
-            3 => factor.solve::<3>(x.as_chunks_mut().0, &mut self.to_top),
+            1 => factor.solve::<1>(x.as_chunks_mut().0, &mut self.work),
+            2 => factor.solve::<2>(x.as_chunks_mut().0, &mut self.work),
+            3 => factor.solve::<3>(x.as_chunks_mut().0, &mut self.work),
             _ => unreachable!("one to three right-hand sides, not {columns}"),
         }
     }

@@ -1,10 +1,6 @@
-//! The elimination tree of a sparse symmetric matrix (Liu 1990), and an order of elimination that
-//! splits it into independent parts.
+//! The elimination tree of a sparse symmetric matrix (Liu 1990): which columns of L add to which.
 //!
-//! Any order in which children come before their parents gives the same factor up to permutation. So
-//! the tree can be cut below its top into subtrees of about equal work that know nothing of each
-//! other: triangular solves go through them side by side. The parts depend on the matrix alone, never
-//! on the number of threads, and so do all results.
+//! Any order in which children come before their parents gives the same factor up to permutation.
 
 use nalgebra_sparse::CscMatrix;
 
@@ -77,14 +73,51 @@ impl EliminationTree {
         (begin, rows)
     }
 
-    /// An equivalent order in which each of a few subtrees is contiguous, the rest of the tree (its
-    /// top) at the end: `order[k]` is the column that becomes the k-th. Also where each part ends.
-    pub fn split(&self, upper: &CscMatrix<f64>, parts: usize) -> (Vec<u32>, Vec<usize>) {
-        let parts = parts.max(1);
+    /// An equivalent order in levels: in each, a few sets of subtrees are contiguous parts of about equal
+    /// work; what stands above them in the tree is left to later levels, the last of which is one part.
+    /// `parts` says how many parts the levels have. `order[k]` is the column that becomes the k-th;
+    /// also where each part of each level ends.
+    pub fn split(&self, upper: &CscMatrix<f64>, parts: &[usize]) -> (Vec<u32>, Vec<Vec<usize>>) {
         let n = self.parent.len();
-        // work of a subtree: entries of L in its columns
-        let mut work = vec![1u64; n];
-        self.for_each_entry(upper, |_, j| work[j] += 1);
+        // work of a column: its entries of L
+        let mut own = vec![1u64; n];
+        self.for_each_entry(upper, |_, j| own[j] += 1);
+        // parts are numbered level by level
+        let mut part_of = vec![NONE; n];
+        let mut counts = Vec::new();
+        let mut first = 0;
+        for &parts in parts.iter().chain(&[1]) {
+            self.split_level(&own, parts, first, &mut part_of);
+            counts.push(parts);
+            first += parts as u32;
+        }
+        let mut ends = vec![0usize; first as usize];
+        part_of.iter().for_each(|&p| ends[p as usize] += 1);
+        for p in 1..ends.len() {
+            ends[p] += ends[p - 1];
+        }
+        let mut next: Vec<usize> = core::iter::once(0).chain(ends.iter().copied()).collect();
+        let mut order = vec![0u32; n];
+        for j in self.postorder() {
+            let slot = &mut next[part_of[j as usize] as usize];
+            order[*slot] = j;
+            *slot += 1;
+        }
+        let mut ends = ends.into_iter();
+        let levels = counts
+            .into_iter()
+            .map(|parts| ends.by_ref().take(parts).collect());
+        (order, levels.collect())
+    }
+
+    /// Gives parts, numbered from `first` on, to the columns that have none yet, but for the top above
+    /// them; with one part there is no top.
+    fn split_level(&self, own: &[u64], parts: usize, first: u32, part_of: &mut [u32]) {
+        let n = self.parent.len();
+        let is_open = |part_of: &[u32], j: usize| part_of[j] == NONE;
+        let mut work: Vec<u64> = (0..n)
+            .map(|j| if is_open(part_of, j) { own[j] } else { 0 })
+            .collect();
         let total: u64 = work.iter().sum();
         for j in 0..n {
             // parents come after their children
@@ -93,46 +126,39 @@ impl EliminationTree {
             }
         }
         // a column is in the top if its subtree is more than a fraction of all
-        let limit = total / (2 * parts as u64) + 1;
+        let limit = if parts > 1 {
+            total / (2 * parts as u64)
+        } else {
+            total
+        };
         let is_top = |j: usize| work[j] > limit;
         let is_root =
             |j: usize| !is_top(j) && (self.parent[j] == NONE || is_top(self.parent[j] as usize));
         // largest first into the emptiest part; ties by number, so that the split is always the same
-        let mut roots: Vec<usize> = (0..n).filter(|&j| is_root(j)).collect();
+        let mut roots: Vec<usize> = (0..n)
+            .filter(|&j| is_open(part_of, j) && is_root(j))
+            .collect();
         roots.sort_by_key(|&j| (core::cmp::Reverse(work[j]), j));
         let mut load = vec![0u64; parts];
-        let mut part = vec![parts as u32; n];
+        let mut part = vec![0; n];
         for root in roots {
             let emptiest = (0..parts).min_by_key(|&p| (load[p], p)).unwrap_or(0);
             load[emptiest] += work[root];
             part[root] = emptiest as u32;
         }
         for j in (0..n).rev() {
-            if !is_top(j) && !is_root(j) {
+            if !is_open(part_of, j) || is_top(j) {
+                continue;
+            }
+            if !is_root(j) {
                 part[j] = part[self.parent[j] as usize];
             }
+            part_of[j] = first + part[j];
         }
-        let mut ends = vec![0usize; parts + 1];
-        part.iter().for_each(|&p| ends[p as usize] += 1);
-        for p in 1..=parts {
-            ends[p] += ends[p - 1];
-        }
-        let mut next: Vec<usize> = core::iter::once(0)
-            .chain(ends[..parts].iter().copied())
-            .collect();
-        let postorder = self.postorder();
-        let mut order = vec![0u32; n];
-        for &j in &postorder {
-            let slot = &mut next[part[j as usize] as usize];
-            order[*slot] = j;
-            *slot += 1;
-        }
-        ends.pop();
-        (order, ends)
     }
 
     /// Children before parents, subtrees contiguous.
-    fn postorder(&self) -> Vec<u32> {
+    pub fn postorder(&self) -> Vec<u32> {
         let n = self.parent.len();
         let mut first_child = vec![NONE; n];
         let mut sibling = vec![NONE; n];

@@ -2,10 +2,16 @@
 
 mod assembly;
 mod cholesky;
+mod dissection;
 mod elimination_tree;
+mod graph;
+mod order;
 mod panels;
 mod triangular;
 
 pub use assembly::{SymmetricAssembly, WeightedSum};
-pub use cholesky::{Cholesky, NotPositiveDefinite, Order};
+pub use cholesky::{Cholesky, NotPositiveDefinite};
+pub use dissection::{Bisection, Bisector};
 pub use elimination_tree::EliminationTree;
+pub use graph::Graph;
+pub use order::Order;

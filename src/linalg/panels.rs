@@ -27,7 +27,7 @@ pub struct Panel {
     pub rows: u32,
     /// How many fours of rows it has,
     pub fours: u32,
-    /// and how many of them are in its own part (all, in the top).
+    /// and how many of them are in its own part, the rest being in later levels.
     pub inner: u32,
 }
 
@@ -49,6 +49,31 @@ impl Panel {
     }
 }
 
+/// The last column of the panel that begins with column `first`, before `end`.
+fn last_column(tree: &EliminationTree, begin: &[u32], first: usize, end: usize) -> usize {
+    let count = |j: usize| begin[j + 1] - begin[j];
+    let mut last = first;
+    // beside its own, a column has at most the rows of its parent
+    while last + 1 < end.min(first + WIDEST)
+        && tree.parent[last] == last as u32 + 1
+        && count(last) == count(last + 1) + 1
+    {
+        last += 1;
+    }
+    last
+}
+
+/// A part of a level: columns that know nothing of those of its neighbours.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Where its columns end.
+    pub end: usize,
+    /// Where its panels begin,
+    pub begin_panel: usize,
+    /// and end.
+    pub end_panel: usize,
+}
+
 /// The panels of a factor.
 #[derive(Debug, Clone, Default)]
 pub struct Panels {
@@ -56,8 +81,8 @@ pub struct Panels {
     pub panels: Vec<Panel>,
     /// Rows below, ascending but for the fill.
     pub rows: Vec<[u32; ROWS]>,
-    /// Ends of the parts, as panels.
-    pub parts: Vec<usize>,
+    /// The parts of each level; at least one level.
+    pub levels: Vec<Vec<Part>>,
     /// Number of values.
     pub values: usize,
     /// Entries of L: values that are not fill.
@@ -65,55 +90,71 @@ pub struct Panels {
 }
 
 impl Panels {
-    /// The panels of the factor of a matrix with this upper triangle and parts of its order (ends, as
-    /// columns).
-    pub fn new(upper: &CscMatrix<f64>, column_parts: &[usize]) -> Self {
+    /// The panels of the factor of a matrix with this upper triangle and the levels of its order.
+    pub fn new(upper: &CscMatrix<f64>, levels: &[Vec<usize>]) -> Self {
         let n = upper.ncols();
         let tree = EliminationTree::new(upper);
         let (begin, rows) = tree.columns(upper);
-        let count = |j: usize| begin[j + 1] - begin[j];
-        let bottom = column_parts.last().copied().unwrap_or(0);
         let mut this = Self {
             entries: n + rows.len(),
             ..Self::default()
         };
-        let mut part = 0;
-        let mut j = 0;
-        while j < n {
-            while part < column_parts.len() && j >= column_parts[part] {
-                this.parts.push(this.panels.len());
-                part += 1;
-            }
-            let end = column_parts.get(part).copied().unwrap_or(n).min(j + WIDEST);
-            let mut last = j;
-            // beside its own, a column has at most the rows of its parent
-            while last + 1 < end
-                && tree.parent[last] == last as u32 + 1
-                && count(last) == count(last + 1) + 1
-            {
-                last += 1;
-            }
-            let below = &rows[begin[last] as usize..begin[last + 1] as usize];
-            let own = below.partition_point(|&r| j >= bottom || (r as usize) < bottom);
-            let (own, top) = below.split_at(own);
-            let mut panel = Panel {
-                first: j as u32,
-                width: (last + 1 - j) as u32,
-                values: this.values as u32,
-                rows: this.rows.len() as u32,
-                fours: 0,
-                inner: 0,
-            };
-            this.push_rows(own);
-            panel.inner = this.rows.len() as u32 - panel.rows;
-            this.push_rows(top);
-            panel.fours = this.rows.len() as u32 - panel.rows;
-            this.values += panel.len();
-            this.panels.push(panel);
-            j = last + 1;
+        let everything = [vec![n]];
+        let levels = if levels.is_empty() {
+            &everything
+        } else {
+            levels
+        };
+        let mut first = 0;
+        for ends in levels {
+            let level_end = ends.last().copied().unwrap_or(first);
+            let parts = ends.iter().map(|&end| {
+                let begin_panel = this.panels.len();
+                while first < end {
+                    let last = last_column(&tree, &begin, first, end);
+                    let below = &rows[begin[last] as usize..begin[last + 1] as usize];
+                    this.push(first, last, below, level_end);
+                    first = last + 1;
+                }
+                let end_panel = this.panels.len();
+                Part {
+                    end,
+                    begin_panel,
+                    end_panel,
+                }
+            });
+            let parts = parts.collect();
+            this.levels.push(parts);
         }
-        this.parts.resize(column_parts.len(), this.panels.len());
         this
+    }
+
+    /// Most unknowns that the parts of a level may add to, times the parts.
+    pub fn work(&self) -> usize {
+        let n = self
+            .panels
+            .last()
+            .map_or(0, |p| (p.first + p.width) as usize);
+        let of_level = |parts: &Vec<Part>| parts.len() * (n - parts.last().map_or(n, |p| p.end));
+        self.levels.iter().map(of_level).max().unwrap_or(0)
+    }
+
+    fn push(&mut self, first: usize, last: usize, below: &[u32], level_end: usize) {
+        let (own, later) = below.split_at(below.partition_point(|&r| (r as usize) < level_end));
+        let mut panel = Panel {
+            first: first as u32,
+            width: (last + 1 - first) as u32,
+            values: self.values as u32,
+            rows: self.rows.len() as u32,
+            fours: 0,
+            inner: 0,
+        };
+        self.push_rows(own);
+        panel.inner = self.rows.len() as u32 - panel.rows;
+        self.push_rows(later);
+        panel.fours = self.rows.len() as u32 - panel.rows;
+        self.values += panel.len();
+        self.panels.push(panel);
     }
 
     fn push_rows(&mut self, rows: &[u32]) {

@@ -1,10 +1,10 @@
 //! Triangular solves with a factor in panels, part by part.
 
-use super::panels::{Panel, Panels, ROWS, WIDEST};
+use super::panels::{Panel, Panels, Part, ROWS, WIDEST};
 use crate::parallel;
 use core::ops::Range;
 
-/// L in panels, with the independent parts of its elimination tree.
+/// L in panels.
 #[derive(Clone, Copy)]
 pub struct Factor<'a> {
     /// Which columns and rows.
@@ -13,101 +13,90 @@ pub struct Factor<'a> {
     pub values: &'a [f64],
     /// 1/L_jj.
     pub inverse_diagonal: &'a [f64],
-    /// Ends of the parts, as columns; the columns after the last are their common top.
-    pub parts: &'a [usize],
 }
 
-/// What is done with a part: its number, its unknowns, its workspace.
-type EachPart<'a, const D: usize> = dyn Fn(usize, &mut [[f64; D]], &mut [[f64; D]]) + Sync + 'a;
+/// What is done with a part: its first column, the part, its unknowns, its workspace.
+type EachPart<'a, const D: usize> =
+    dyn Fn(usize, Part, &mut [[f64; D]], &mut [[f64; D]]) + Sync + 'a;
 
 /// Runs each part with its own unknowns and its workspace, side by side where there are threads.
 fn for_each_part<const D: usize>(
-    parts: &[usize],
-    (number, first): (usize, usize),
+    first: usize,
+    parts: &[Part],
     own: &mut [[f64; D]],
     work: &mut [[f64; D]],
     each: &EachPart<D>,
 ) {
     match parts {
         [] => {}
-        [_] => each(number, own, work),
+        [part] => each(first, *part, own, work),
         _ => {
             let half = parts.len() / 2;
-            let middle = parts[half - 1];
+            let middle = parts[half - 1].end;
             let each_work = work.len() / parts.len();
             let (own_a, own_b) = own.split_at_mut(middle - first);
             let (work_a, work_b) = work.split_at_mut(half * each_work);
             parallel::join(
-                || for_each_part(&parts[..half], (number, first), own_a, work_a, each),
-                || for_each_part(&parts[half..], (number + half, middle), own_b, work_b, each),
+                || for_each_part(first, &parts[..half], own_a, work_a, each),
+                || for_each_part(middle, &parts[half..], own_b, work_b, each),
             );
         }
     }
 }
 
-/// The `number`-th of consecutive ranges with these ends.
-fn range(ends: &[usize], number: usize) -> Range<usize> {
-    number.checked_sub(1).map_or(0, |before| ends[before])..ends[number]
-}
-
 impl Factor<'_> {
-    /// Solves L Lᵀ X = B in place, X interleaved. Sums are taken in the order of the parts, whatever
-    /// the number of threads. `work` has room for D numbers a part and unknown of the top.
+    /// Solves L Lᵀ X = B in place, X interleaved, level by level. Sums are taken in the order of the
+    /// parts, whatever the number of threads. `work` has room for D × [`Panels::work`] numbers.
     pub fn solve<const D: usize>(&self, x: &mut [[f64; D]], work: &mut [f64]) {
-        let n = x.len();
-        let bottom = self.parts.last().copied().unwrap_or(0);
-        let (own, top) = x.split_at_mut(bottom);
-        let top_panels = self.panels.parts.last().copied().unwrap_or(0)..self.panels.panels.len();
-        let work = &mut work.as_chunks_mut::<D>().0[..self.parts.len() * top.len()];
-        for_each_part(self.parts, (0, 0), own, work, &|part, own, to_top| {
-            to_top.fill([0.0; D]);
-            Forward {
-                factor: self,
-                panels: range(&self.panels.parts, part),
-                first: range(self.parts, part).start,
-                bottom,
-                own,
-                top: to_top,
-            }
-            .run();
-        });
-        for add in work.chunks_exact(top.len().max(1)) {
-            for (x, add) in top.iter_mut().zip(add) {
-                for d in 0..D {
-                    x[d] += add[d];
+        let work = work.as_chunks_mut::<D>().0;
+        let mut begin = 0;
+        for parts in &self.panels.levels {
+            let end = parts.last().map_or(begin, |part| part.end);
+            let (own, later) = x[begin..].split_at_mut(end - begin);
+            let work = &mut work[..parts.len() * later.len()];
+            for_each_part(begin, parts, own, work, &|first, part, own, later| {
+                later.fill([0.0; D]);
+                let panels = part.begin_panel..part.end_panel;
+                Forward {
+                    factor: self,
+                    panels,
+                    first,
+                    own,
+                    end,
+                    later,
+                }
+                .run();
+            });
+            for add in work.chunks_exact(later.len().max(1)) {
+                for (x, add) in later.iter_mut().zip(add) {
+                    for d in 0..D {
+                        x[d] += add[d];
+                    }
                 }
             }
+            begin = end;
         }
-        Forward {
-            factor: self,
-            panels: top_panels.clone(),
-            first: bottom,
-            bottom: n,
-            own: top,
-            top: &mut [],
+        for (level, parts) in self.panels.levels.iter().enumerate().rev() {
+            let before = level.checked_sub(1).map(|l| &self.panels.levels[l]);
+            let begin = before
+                .and_then(|parts| parts.last())
+                .map_or(0, |part| part.end);
+            let end = parts.last().map_or(begin, |part| part.end);
+            let (own, later) = x[begin..].split_at_mut(end - begin);
+            let later = &*later;
+            for_each_part(begin, parts, own, &mut [], &|first, part, own, _| {
+                let panels = part.begin_panel..part.end_panel;
+                Backward {
+                    factor: self,
+                    panels,
+                    first,
+                    own,
+                    end,
+                    later,
+                }
+                .run();
+            });
         }
-        .run();
-        Backward {
-            factor: self,
-            panels: top_panels,
-            first: bottom,
-            bottom: n,
-            own: top,
-            top: &[],
-        }
-        .run();
-        let top = &*top;
-        for_each_part(self.parts, (0, 0), own, &mut [], &|part, own, _| {
-            Backward {
-                factor: self,
-                panels: range(&self.panels.parts, part),
-                first: range(self.parts, part).start,
-                bottom,
-                own,
-                top,
-            }
-            .run();
-        });
     }
 }
 
@@ -120,15 +109,15 @@ fn triangle_column(panel: &Panel, local: usize) -> Range<usize> {
     begin..begin + width - 1 - local
 }
 
-/// L y = b for some panels, the first of which belongs to the unknown `first`; rows from `bottom` on
-/// are added up in `top`.
+/// L y = b for some panels, the first of which belongs to the unknown `first`; rows from `end` on are
+/// added up in `later`.
 struct Forward<'a, const D: usize> {
     factor: &'a Factor<'a>,
     panels: Range<usize>,
     first: usize,
-    bottom: usize,
     own: &'a mut [[f64; D]],
-    top: &'a mut [[f64; D]],
+    end: usize,
+    later: &'a mut [[f64; D]],
 }
 
 impl<const D: usize> Forward<'_, D> {
@@ -137,9 +126,9 @@ impl<const D: usize> Forward<'_, D> {
             factor,
             panels,
             first,
-            bottom,
             own,
-            top,
+            end,
+            later,
         } = self;
         for panel in &factor.panels.panels[panels] {
             let (start, width) = (panel.first as usize, panel.width as usize);
@@ -172,7 +161,7 @@ impl<const D: usize> Forward<'_, D> {
                 }
                 let (target, base) = match number < panel.inner as usize {
                     true => (&mut *own, first),
-                    false => (&mut *top, bottom),
+                    false => (&mut *later, end),
                 };
                 for k in 0..ROWS {
                     let target = &mut target[rows[k] as usize - base];
@@ -215,14 +204,15 @@ fn add_products<const C: usize, const D: usize>(
     }
 }
 
-/// Lᵀ x = y for some panels, from the last to the first; rows from `bottom` on are read from `top`.
+/// Lᵀ x = y for some panels, from the last to the first; rows from `end` on are read from
+/// `later`.
 struct Backward<'a, const D: usize> {
     factor: &'a Factor<'a>,
     panels: Range<usize>,
     first: usize,
-    bottom: usize,
     own: &'a mut [[f64; D]],
-    top: &'a [[f64; D]],
+    end: usize,
+    later: &'a [[f64; D]],
 }
 
 impl<const D: usize> Backward<'_, D> {
@@ -231,9 +221,9 @@ impl<const D: usize> Backward<'_, D> {
             factor,
             panels,
             first,
-            bottom,
             own,
-            top,
+            end,
+            later,
         } = self;
         let mut gathered = [[[0.0; D]; ROWS]; GATHERED];
         for panel in factor.panels.panels[panels].iter().rev() {
@@ -255,7 +245,7 @@ impl<const D: usize> Backward<'_, D> {
                     *x = rows.map(|row| own[row as usize - first]);
                 }
                 for (x, rows) in gathered[own_rows..].iter_mut().zip(&rows[own_rows..]) {
-                    *x = rows.map(|row| top[row as usize - bottom]);
+                    *x = rows.map(|row| later[row as usize - end]);
                 }
                 let values = &values[begin * width..(begin + rows.len()) * width];
                 let mut column = 0;

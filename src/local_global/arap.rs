@@ -7,13 +7,13 @@
 use crate::energy::Arap;
 use crate::energy::Energy;
 use crate::energy::total::{deformation_gradient, distortion, spread, total};
-use crate::geometry::RestShape;
+use crate::geometry::{Elimination, RestShape};
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::{
     BuildError, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport, Stopwatch,
 };
 use crate::space::{Components, Space};
-use crate::wrapd::{Elimination, Problem};
+use crate::wrapd::Problem;
 use core::marker::PhantomData;
 
 /// ARAP local/global.
@@ -48,7 +48,7 @@ where
         let elimination = Elimination::new(rest, problem.start.len() / S::DIM, problem.pins);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
         matrix.fill(|_| 1.0);
-        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.levels)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

@@ -12,7 +12,6 @@
 mod block;
 mod coupling;
 mod elements;
-mod elimination;
 mod kernels;
 mod layout;
 mod options;
@@ -20,7 +19,6 @@ mod problem;
 mod solver;
 
 pub use coupling::{Coupling, Linear, RotationAware};
-pub use elimination::Elimination;
 pub use options::{Reweighting, WrapdOptions};
 pub use problem::Problem;
 pub use solver::Wrapd;

@@ -4,8 +4,9 @@ use super::block::{BLOCK, Block, BlockSums};
 use super::elements::{Elements, Model, Shape};
 use super::kernels::Pass;
 use super::layout::{build_blocks, corner_lists, element_order};
-use super::{Coupling, Elimination, Problem, WrapdOptions};
+use super::{Coupling, Problem, WrapdOptions};
 use crate::energy::Energy;
+use crate::geometry::Elimination;
 use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
@@ -85,7 +86,7 @@ impl Wrapd {
         let rest = &rest.reordered(&order);
         let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
         matrix.fill(|_| shape.constants.rest_stiffness);
-        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.parts)?;
+        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.levels)?;
         factor
             .factorize(matrix.matrix())
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

@@ -1,7 +1,7 @@
 //! The numbering of the unknowns: free vertices in elimination order, pinned ones last.
 
-use crate::geometry::RestShape;
-use crate::linalg::Cholesky;
+use super::RestShape;
+use crate::linalg::Order;
 
 /// Slots of the vertices.
 #[derive(Debug, Clone)]
@@ -10,8 +10,8 @@ pub struct Elimination {
     pub slot: Vec<u32>,
     /// Number of free vertices.
     pub free: usize,
-    /// Ends of the independent parts of the order.
-    pub parts: Vec<usize>,
+    /// The levels of the order, see [`Order::levels`].
+    pub levels: Vec<Vec<usize>>,
 }
 
 impl Elimination {
@@ -30,7 +30,7 @@ impl Elimination {
         for (k, v) in (0..vertices).filter(|&v| pinned[v]).enumerate() {
             slot[v] = (free + k) as u32;
         }
-        let order = Cholesky::order(
+        let order = Order::new(
             free,
             rest.pairs()
                 .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
@@ -41,7 +41,7 @@ impl Elimination {
         Self {
             slot,
             free,
-            parts: order.parts,
+            levels: order.levels,
         }
     }
 
