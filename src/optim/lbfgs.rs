@@ -6,7 +6,7 @@
 //! twice and writes none. The products of a new pair come for free: s_i·y from s_i·g before and after
 //! the step, s·y_j from the recursion.
 
-use super::vectors::{add_combination, dot, dots, negate};
+use super::vectors::{add_combination, dot, dots, set_combination};
 use crate::linalg::Cholesky;
 
 /// A history of steps s and gradient changes y.
@@ -109,9 +109,10 @@ impl Lbfgs {
                 .sum();
             self.alpha[i] = pairs[i].rho * (self.along_gradient[i] - newer);
         }
-        direction.copy_from_slice(gradient);
-        add_combination(
-            pairs.iter().zip(&self.alpha).map(|(p, a)| (-a, &p.y[..])),
+        // all with the opposite sign: the solution is −r
+        set_combination(
+            (-1.0, gradient),
+            pairs.iter().zip(&self.alpha).map(|(p, a)| (*a, &p.y[..])),
             direction,
         );
         factor.solve_in_place(direction, columns);
@@ -125,22 +126,21 @@ impl Lbfgs {
             let older: f64 = (0..i)
                 .map(|j| self.coefficient[j] * pairs[j].against[i])
                 .sum();
-            let beta = pairs[i].rho * (self.along_direction[i] + older);
+            let beta = pairs[i].rho * (older - self.along_direction[i]);
             self.coefficient.push(self.alpha[i] - beta);
         }
         add_combination(
             pairs
                 .iter()
                 .zip(&self.coefficient)
-                .map(|(p, c)| (*c, &p.s[..])),
+                .map(|(p, c)| (-c, &p.s[..])),
             direction,
         );
-        negate(direction);
         for i in 0..m {
             let steps: f64 = (0..m)
                 .map(|j| self.coefficient[j] * pairs[j].against[i])
                 .sum();
-            self.along_direction[i] = -(self.along_direction[i] + steps);
+            self.along_direction[i] -= steps;
         }
         self.slope = dot(gradient, direction);
         self.slope
@@ -193,15 +193,12 @@ impl Lbfgs {
             let oldest = self.pairs.remove(0);
             self.spare.push(oldest);
         }
-        pair.s.clear();
-        pair.s.extend_from_slice(step);
-        pair.y.clear();
-        pair.y.extend(
-            gradient_after
-                .iter()
-                .zip(gradient_before)
-                .map(|(a, b)| a - b),
-        );
+        let nothing = core::iter::empty();
+        pair.s.resize(step.len(), 0.0);
+        set_combination((1.0, step), nothing, &mut pair.s);
+        pair.y.resize(step.len(), 0.0);
+        let before = core::iter::once((-1.0, gradient_before));
+        set_combination((1.0, gradient_after), before, &mut pair.y);
         self.pairs.push(pair);
         core::mem::swap(&mut self.along_gradient, &mut self.products);
         self.fresh = true;

@@ -109,6 +109,23 @@ impl WithSimd for Axpy<'_> {
     }
 }
 
+/// y = c x.
+struct Scaled<'a> {
+    c: f64,
+    x: &'a [f64],
+    y: &'a mut [f64],
+}
+
+impl WithSimd for Scaled<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (y, x) in self.y.iter_mut().zip(self.x) {
+            *y = self.c * x;
+        }
+    }
+}
+
 /// y += Σ cᵢ xᵢ, in the order of the terms.
 pub fn add_combination<'a>(
     terms: impl Iterator<Item = (f64, &'a [f64])> + Clone + Sync + Send,
@@ -125,7 +142,21 @@ pub fn add_combination<'a>(
     });
 }
 
-/// x = −x.
-pub fn negate(x: &mut [f64]) {
-    x.iter_mut().for_each(|x| *x = -*x);
+/// y = c x + Σ cᵢ xᵢ, in this order.
+pub fn set_combination<'a>(
+    (c, x): (f64, &[f64]),
+    terms: impl Iterator<Item = (f64, &'a [f64])> + Clone + Sync + Send,
+    y: &mut [f64],
+) {
+    parallel::for_each_chunk(y, BLOCK * BLOCKS, |chunk, y| {
+        for (block, y) in y.chunks_mut(BLOCK).enumerate() {
+            let start = (chunk * BLOCKS + block) * BLOCK;
+            let x = &x[start..start + y.len()];
+            dispatch(Scaled { c, x, y });
+            for (c, x) in terms.clone() {
+                let x = &x[start..start + y.len()];
+                dispatch(Axpy { c, x, y });
+            }
+        }
+    });
 }

@@ -286,6 +286,17 @@ impl Wrapd {
         }
     }
 
+    /// Copies the positions by slot to those by vertex.
+    fn copy_positions<const DIM: usize>(&mut self) {
+        let (slots, x) = (&self.slot, self.x.as_chunks::<DIM>().0);
+        let positions = self.positions.as_chunks_mut::<DIM>().0;
+        parallel::for_each_chunk(positions, VERTICES, |chunk, positions| {
+            for (out, &slot) in positions.iter_mut().zip(&slots[chunk * VERTICES..]) {
+                *out = x[slot as usize];
+            }
+        });
+    }
+
     /// Takes over the candidate weights: U is scaled by w²/w_cand², A refactored, the history cleared.
     fn reweight(&mut self, iteration: usize) -> Result<(), SolveError> {
         parallel::for_each_chunk(&mut self.blocks, 1, |_, block| block[0].take_candidates());
@@ -339,21 +350,18 @@ impl Wrapd {
 
         let clock = Stopwatch::start();
         sums.z_energy = local.z_energy;
-        if let Some(slot) = self.x.iter().position(|x| !x.is_finite()) {
-            let vertex = self
-                .slot
-                .iter()
-                .position(|&s| s as usize == slot / dimension)
-                .unwrap_or(0);
+        match dimension {
+            2 => self.copy_positions::<2>(),
+            _ => self.copy_positions::<3>(),
+        }
+        // a vertex that is not finite makes the gradient so; only then is it looked for
+        let finite = self.squares.iter().all(|s| s.is_finite());
+        let bad = |x: &f64| !x.is_finite();
+        if let (false, Some(i)) = (finite, self.positions.iter().position(bad)) {
             return Err(SolveError::NonFinite {
                 iteration: k + 1,
-                vertex,
+                vertex: i / dimension,
             });
-        }
-        for (v, &s) in self.slot.iter().enumerate() {
-            let s = s as usize * dimension;
-            self.positions[v * dimension..(v + 1) * dimension]
-                .copy_from_slice(&self.x[s..s + dimension]);
         }
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
