@@ -350,18 +350,22 @@ impl Wrapd {
 
         let clock = Stopwatch::start();
         sums.z_energy = local.z_energy;
+        // a vertex that is not finite makes the gradient so; only then is it looked for
+        if !self.squares.iter().all(|s| s.is_finite()) {
+            let bad = |&slot: &u32| {
+                let slot = slot as usize * dimension;
+                !self.x[slot..slot + dimension].iter().all(|x| x.is_finite())
+            };
+            if let Some(vertex) = self.slot.iter().position(bad) {
+                return Err(SolveError::NonFinite {
+                    iteration: k + 1,
+                    vertex,
+                });
+            }
+        }
         match dimension {
             2 => self.copy_positions::<2>(),
             _ => self.copy_positions::<3>(),
-        }
-        // a vertex that is not finite makes the gradient so; only then is it looked for
-        let finite = self.squares.iter().all(|s| s.is_finite());
-        let bad = |x: &f64| !x.is_finite();
-        if let (false, Some(i)) = (finite, self.positions.iter().position(bad)) {
-            return Err(SolveError::NonFinite {
-                iteration: k + 1,
-                vertex: i / dimension,
-            });
         }
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
