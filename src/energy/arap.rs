@@ -3,7 +3,7 @@
 //! ψ' = 2(σᵢ − 1), ψ'' = 2; the prox is (18): z = (2 + k p)/(2 + k).
 
 use super::{Constants, Energy};
-use crate::space::{Components, Lane, Plane, Scalar};
+use crate::space::{Components, Lane, Space};
 
 /// As rigid as possible; an isometry has 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -11,12 +11,12 @@ pub struct Arap;
 
 /// One axis: (σ − 1)².
 #[inline(always)]
-fn term<T: Scalar>(s: T) -> T {
+fn term<L: Lane>(s: L) -> L {
     let d = s - s.lift(1.0);
     d * d
 }
 
-impl Energy<Plane> for Arap {
+impl<S: Space> Energy<S> for Arap {
     const BARRIER: bool = false;
 
     fn constants(&self) -> Constants {
@@ -28,22 +28,26 @@ impl Energy<Plane> for Arap {
         }
     }
     #[inline(always)]
-    fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
-        term(sigma[0]) + term(sigma[1])
+    fn density<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
+        let mut sum = term(sigma.at(0));
+        for i in 1..S::STRETCHES {
+            sum = sum + term(sigma.at(i));
+        }
+        sum
     }
     #[inline(always)]
-    fn gradient<T: Scalar>(&self, sigma: [T; 2]) -> [T; 2] {
+    fn gradient<L: Lane>(&self, sigma: S::Sigma<L>) -> S::Sigma<L> {
         Components::from_fn(
             #[inline(always)]
-            |i| sigma[i].lift(2.0) * (sigma[i] - sigma[i].lift(1.0)),
+            |i| sigma.at(i).lift(2.0) * (sigma.at(i) - sigma.at(i).lift(1.0)),
         )
     }
     #[inline(always)]
-    fn effective_stiffness<L: Lane>(&self, sigma: [L; 2]) -> L {
-        sigma[0].lift(2.0)
+    fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
+        sigma.at(0).lift(2.0)
     }
     #[inline(always)]
-    fn prox<L: Lane>(&self, p: [L; 2], k: L, _warm: [L; 2]) -> ([L; 2], u32) {
+    fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, _: S::Sigma<L>) -> (S::Sigma<L>, u32) {
         let two = k.lift(2.0);
         (
             Components::from_fn(

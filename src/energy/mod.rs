@@ -1,21 +1,22 @@
 //! Deformation energies as functions of the singular values: one file an energy.
 
 mod arap;
+mod neo_hookean;
 mod symmetric_dirichlet;
 pub mod total;
 
 pub use arap::Arap;
+pub use neo_hookean::NeoHookean;
 pub use symmetric_dirichlet::SymmetricDirichlet;
 
-use crate::space::{Lane, Scalar, Space};
+use crate::space::{Lane, Space};
 
 /// A rotation-invariant energy density ψ(σ) per unit of rest measure.
 pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
-    /// ψ(σ). Arithmetic only, so that dual numbers pass through; meaningless for σ outside the
-    /// energy's domain.
-    fn density<T: Scalar>(&self, sigma: S::Sigma<T>) -> T;
+    /// ψ(σ); meaningless for σ outside the energy's domain.
+    fn density<L: Lane>(&self, sigma: S::Sigma<L>) -> L;
     /// ∂ψ/∂σᵢ.
-    fn gradient<T: Scalar>(&self, sigma: S::Sigma<T>) -> S::Sigma<T>;
+    fn gradient<L: Lane>(&self, sigma: S::Sigma<L>) -> S::Sigma<L>;
     /// K_e(σ), the largest eigenvalue of ∂²ψ/∂σ² (20).
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L;
     /// argmin_z ψ(z) + k/2 ‖z − p‖² (6), to rounding, and how many inner iterations it took.

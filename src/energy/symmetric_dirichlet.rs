@@ -4,9 +4,9 @@
 //! ψ' = 2σ − 2σ⁻³, ψ'' = 2 + 6σ⁻⁴, and the prox minimises z² + z⁻² + k/2 (z − p)² over z > 0.
 
 use super::{Constants, Energy};
-use crate::space::{Components, Lane, Plane, Scalar};
+use crate::space::{Components, Lane, Space};
 
-/// Symmetric Dirichlet energy; reported as ¼ Σ A (ψ − 2k) + 1, so that an isometry has 1.
+/// Symmetric Dirichlet energy; reported as Σ A (ψ − 2k)/2k + 1, so that an isometry has 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SymmetricDirichlet;
 
@@ -78,46 +78,60 @@ fn floor<L: Lane>(a: L, b: L) -> L {
 
 /// One axis: σ² + σ⁻².
 #[inline(always)]
-fn term<T: Scalar>(s: T) -> T {
+fn term<L: Lane>(s: L) -> L {
     let squared = s * s;
     squared + squared.recip()
 }
 
-impl Energy<Plane> for SymmetricDirichlet {
+impl<S: Space> Energy<S> for SymmetricDirichlet {
     const BARRIER: bool = true;
 
     fn constants(&self) -> Constants {
         Constants {
             rest_stiffness: 8.0,
-            isometry: 4.0,
-            scale: 0.25,
+            isometry: 2.0 * S::STRETCHES as f64,
+            scale: 0.5 / S::STRETCHES as f64,
             offset: 1.0,
         }
     }
     #[inline(always)]
-    fn density<T: Scalar>(&self, sigma: [T; 2]) -> T {
-        term(sigma[0]) + term(sigma[1])
+    fn density<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
+        let mut sum = term(sigma.at(0));
+        for i in 1..S::STRETCHES {
+            sum = sum + term(sigma.at(i));
+        }
+        sum
     }
     #[inline(always)]
-    fn gradient<T: Scalar>(&self, sigma: [T; 2]) -> [T; 2] {
+    fn gradient<L: Lane>(&self, sigma: S::Sigma<L>) -> S::Sigma<L> {
         Components::from_fn(
             #[inline(always)]
             |i| {
-                let s = sigma[i];
+                let s = sigma.at(i);
                 s.lift(2.0) * (s - (s * s * s).recip())
             },
         )
     }
     #[inline(always)]
-    fn effective_stiffness<L: Lane>(&self, sigma: [L; 2]) -> L {
-        let least = sigma[0].min(sigma[1]);
+    fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
+        let mut least = sigma.at(0);
+        for i in 1..S::STRETCHES {
+            least = least.min(sigma.at(i));
+        }
         let squared = least * least;
         least.lift(2.0) + least.lift(6.0) / (squared * squared)
     }
     #[inline(always)]
-    fn prox<L: Lane>(&self, p: [L; 2], k: L, warm: [L; 2]) -> ([L; 2], u32) {
-        let (first, n) = axis_prox(p[0], k, warm.at(0));
-        let (second, m) = axis_prox(p[1], k, warm.at(1));
-        ([first, second], n.max(m))
+    fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, warm: S::Sigma<L>) -> (S::Sigma<L>, u32) {
+        let mut most = 0;
+        let sigma = Components::from_fn(
+            #[inline(always)]
+            |i| {
+                let (z, count) = axis_prox(p.at(i), k, warm.at(i));
+                most = most.max(count);
+                z
+            },
+        );
+        (sigma, most)
     }
 }

@@ -45,6 +45,41 @@ pub trait Lane: Scalar {
     fn select(self, mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Does the mask hold anywhere?
     fn any(self, mask: Self::Mask) -> bool;
+    /// self = m·2ᵉ with m in [√½, √2), for normal positive numbers; anything otherwise.
+    fn mantissa_exponent(self) -> (Self, Self);
+
+    /// The natural logarithm of a normal positive number, to 1 ulp: the same bits on every machine, at
+    /// every width. Anything for other arguments.
+    #[inline(always)]
+    fn ln(self) -> Self {
+        // ln m = 2 artanh s, s = (m−1)/(m+1): the odd series to s²¹, since s² < 0.0295
+        let (m, e) = self.mantissa_exponent();
+        let one = self.lift(1.0);
+        let s = (m - one) / (m + one);
+        let square = s * s;
+        let mut sum = self.lift(1.0 / 21.0);
+        let mut power = 19.0;
+        while power > 2.0 {
+            sum = sum * square + self.lift(1.0 / power);
+            power -= 2.0;
+        }
+        let twice = s + s;
+        // ln 2 in two parts: the first times an exponent is exact
+        let high = e * self.lift(f64::from_bits(0x3FE6_2E42_FEE0_0000));
+        let low = e * self.lift(1.908_214_929_270_587_7e-10);
+        high + (twice + (twice * square * sum + low))
+    }
+}
+
+/// m and e of [`Lane::mantissa_exponent`].
+#[inline(always)]
+fn split(x: f64) -> (f64, f64) {
+    let bits = x.to_bits();
+    // adding what is between √½ and 1 to the mantissa carries into the exponent from √2 on
+    let carried = bits.wrapping_add(0x3FF0_0000_0000_0000 - 0x3FE6_A09E_667F_3BCD);
+    let e = (carried >> 52) as i64 - 0x3FF;
+    let m = f64::from_bits(bits.wrapping_sub((e << 52) as u64));
+    (m, e as f64)
 }
 
 impl Scalar for f64 {
@@ -83,6 +118,10 @@ impl Lane for f64 {
     #[inline(always)]
     fn any(self, mask: bool) -> bool {
         mask
+    }
+    #[inline(always)]
+    fn mantissa_exponent(self) -> (f64, f64) {
+        split(self)
     }
 }
 
@@ -205,6 +244,15 @@ impl<S: Simd> Lane for Pack<S> {
     #[inline(always)]
     fn any(self, mask: S::m64s) -> bool {
         self.simd.first_true_m64s(mask) < Self::WIDTH
+    }
+    #[inline(always)]
+    fn mantissa_exponent(self) -> (Self, Self) {
+        let (mut m, mut e) = ([0.0; 8], [0.0; 8]);
+        self.store(&mut m[..Self::WIDTH]);
+        for lane in 0..Self::WIDTH {
+            (m[lane], e[lane]) = split(m[lane]);
+        }
+        (Self::load(self.simd, &m), Self::load(self.simd, &e))
     }
 }
 

@@ -1,13 +1,16 @@
 //! Dimension as a type: what a deformation gradient, its stretch and its singular values are.
 //!
-//! [`Plane`] maps triangles to the plane. `Solid` (tetrahedra in space) and `Sheet` (triangles in
-//! space) join by implementing [`Space`]; no solver knows more of dimension than this trait.
+//! [`Plane`] maps triangles to the plane, [`Solid`] tetrahedra to space. `Sheet` (triangles in space)
+//! joins by implementing [`Space`]; no solver knows more of dimension than this trait.
 
 mod lane;
 mod plane;
+mod solid;
+mod three;
 
 pub use lane::{Lane, Pack, Scalar, dispatch};
 pub use plane::Plane;
+pub use solid::Solid;
 
 /// A fixed number of components, one register each.
 ///
@@ -99,6 +102,14 @@ pub trait Space: Copy + Send + Sync + 'static {
     ) -> Self::Symmetric<L>;
     /// Signed singular values (a reflection is put on the last) and singular vectors.
     fn svd<L: Lane>(f: Self::Gradient<L>) -> (Self::Sigma<L>, Self::Singularframe<L>);
+    /// The same of an F whose polar decomposition is known.
+    #[inline(always)]
+    fn svd_of_polar<L: Lane>(
+        f: Self::Gradient<L>,
+        _polar: Self::Polar<L>,
+    ) -> (Self::Sigma<L>, Self::Singularframe<L>) {
+        Self::svd(f)
+    }
     /// The matrix with these singular values.
     fn from_svd<L: Lane>(sigma: Self::Sigma<L>, frame: Self::Singularframe<L>)
     -> Self::Gradient<L>;

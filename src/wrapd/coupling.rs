@@ -21,6 +21,8 @@ pub trait Coupling<S: Space>: Copy + Send + Sync + 'static {
     fn compose<L: Lane>(values: S::Sigma<L>, frame: Self::Frame<L>) -> Self::Local<L>;
     /// ‖Z‖²_F.
     fn norm_squared<L: Lane>(z: Self::Local<L>) -> L;
+    /// Singular values and vectors of F itself.
+    fn svd<L: Lane>(f: S::Gradient<L>, aux: Self::Aux<L>) -> (S::Sigma<L>, S::Singularframe<L>);
     /// The gradient of ½‖local(F) − P‖² with respect to F (16).
     fn residual<L: Lane>(f: S::Gradient<L>, aux: Self::Aux<L>, p: Self::Local<L>)
     -> S::Gradient<L>;
@@ -51,6 +53,13 @@ impl<S: Space> Coupling<S> for RotationAware {
     #[inline(always)]
     fn norm_squared<L: Lane>(z: S::Symmetric<L>) -> L {
         S::symmetric_norm_squared(z)
+    }
+    #[inline(always)]
+    fn svd<L: Lane>(
+        f: S::Gradient<L>,
+        polar: S::Polar<L>,
+    ) -> (S::Sigma<L>, S::Singularframe<L>) {
+        S::svd_of_polar(f, polar)
     }
     #[inline(always)]
     fn residual<L: Lane>(
@@ -91,6 +100,10 @@ impl<S: Space> Coupling<S> for Linear {
             sum = sum + z.at(i) * z.at(i);
         }
         sum
+    }
+    #[inline(always)]
+    fn svd<L: Lane>(f: S::Gradient<L>, _: ()) -> (S::Sigma<L>, S::Singularframe<L>) {
+        S::svd(f)
     }
     #[inline(always)]
     fn residual<L: Lane>(f: S::Gradient<L>, _: (), p: S::Gradient<L>) -> S::Gradient<L> {

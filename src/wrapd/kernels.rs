@@ -257,7 +257,11 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             change.add(simd, area * (l1 - l0), at);
             z_energy.add(simd, area * density, at);
 
-            let stiff = energy.effective_stiffness(sigma).max(least).min(most);
+            // rest weights need no eigenvalues
+            let stiff = match clamp[0] < clamp[1] {
+                true => energy.effective_stiffness(sigma).max(least).min(most),
+                false => least,
+            };
             // (23): stiff/k ≥ γ or k/stiff ≥ γ
             let off = (threshold * stiff.min(k)).lt(stiff.max(k));
             reweight |= stiff.any(off);
@@ -320,7 +324,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 store_corners::<S, V, 1>([force], forces, at);
                 continue;
             }
-            let (sigma, frame) = S::svd(f);
+            let (sigma, frame) = C::svd(f, aux);
             // ∂ψ/∂F = U ψ'(σ) Vᵀ
             let stress = S::from_svd(energy.gradient(sigma), frame);
             let stress = spread::<S, V>(simd, block, stress, area, at);
