@@ -10,6 +10,7 @@
 //! See `ARCHITECTURE.md` for what lives where and why.
 
 pub mod certificate;
+pub mod deformation;
 pub mod embedding;
 pub mod energy;
 mod error;

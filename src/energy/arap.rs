@@ -25,6 +25,7 @@ impl<S: Space> Energy<S> for Arap {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
+            floor: 0.0,
         }
     }
     #[inline(always)]

@@ -39,6 +39,8 @@ pub struct Constants {
     pub scale: f64,
     /// See `scale`: what an isometry is reported to have.
     pub offset: f64,
+    /// Changes of the energy are measured against |E| + floor.
+    pub floor: f64,
 }
 
 impl Constants {

@@ -152,6 +152,8 @@ impl Energy<Solid> for NeoHookean {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
+            // as in the authors' code: the minimum may be 0
+            floor: 1.0,
         }
     }
 
@@ -170,7 +172,7 @@ impl Energy<Solid> for NeoHookean {
 
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, s: [L; 3]) -> L {
-            let zero = s[0].lift(0.0);
+        let zero = s[0].lift(0.0);
         let (_, _, hessian) = self.augmented(s, s, zero);
         Solid::eigen(hessian).0[0]
     }

@@ -1,9 +1,9 @@
 //! The rest shape of every element: its measure and the operator that takes positions to the
 //! deformation gradient.
 
-use crate::mesh::SurfaceMesh;
+use crate::mesh::{SolidMesh, SurfaceMesh};
 use crate::optim::BuildError;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// Rest shapes of simplices of dimension k, each in its own frame.
 #[derive(Debug, Clone, Default)]
@@ -63,6 +63,48 @@ impl RestShape {
             rest.measure.push(measure);
         }
         Ok(rest)
+    }
+
+    /// Rest shapes of the tetrahedra of a solid, and whether all of them were inside out, and are turned
+    /// (by an exchange of their last two vertices).
+    ///
+    /// # Errors
+    /// `DegenerateElement` names the first tetrahedron whose volume is below 1e-14 of the mean,
+    /// `InvertedRestElement` the first that is inside out where others are not.
+    pub fn of_solid(mesh: &SolidMesh) -> Result<(Self, bool), BuildError> {
+        let edges = |t: &[u32; 4]| {
+            let [a, b, c, d] = t.map(|v| mesh.positions[v as usize]);
+            DMat3::from_cols(b - a, c - a, d - a)
+        };
+        let volumes: Vec<f64> = mesh
+            .simplices
+            .iter()
+            .map(|t| edges(t).determinant() / 6.0)
+            .collect();
+        let mean = volumes.iter().map(|v| v.abs()).sum::<f64>() / volumes.len().max(1) as f64;
+        let small = |v: &&f64| !(v.abs() > 1e-14 * mean && v.is_finite());
+        if let Some(index) = volumes.iter().position(|v| small(&v)) {
+            let measure = volumes[index];
+            return Err(BuildError::DegenerateElement { index, measure });
+        }
+        let turned = volumes.iter().all(|&v| v < 0.0);
+        if let (false, Some(index)) = (turned, volumes.iter().position(|&v| v < 0.0)) {
+            let measure = volumes[index];
+            return Err(BuildError::InvertedRestElement { index, measure });
+        }
+        let mut rest = RestShape {
+            stretches: 3,
+            vertices: Vec::with_capacity(4 * mesh.simplices.len()),
+            inverse: Vec::with_capacity(9 * mesh.simplices.len()),
+            measure: volumes.iter().map(|v| v.abs()).collect(),
+        };
+        for &[a, b, c, d] in &mesh.simplices {
+            let tetrahedron = if turned { [a, b, d, c] } else { [a, b, c, d] };
+            rest.vertices.extend(tetrahedron);
+            let inverse = edges(&tetrahedron).inverse();
+            rest.inverse.extend(inverse.to_cols_array());
+        }
+        Ok((rest, turned))
     }
 
     /// The elements in another order: element `order[k]` becomes the k-th.

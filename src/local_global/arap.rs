@@ -140,7 +140,7 @@ where
             return Err(SolveError::NonFinite { iteration, vertex });
         }
         self.report
-            .settle(before, true, self.tolerance, self.max_iterations);
+            .settle((before, 0.0), true, self.tolerance, self.max_iterations);
         let evaluate = Phase::new(PhaseKind::Evaluate, 1, clock);
         self.report.seconds += begun.seconds();
         self.report.phases = vec![local, global, evaluate];

@@ -32,6 +32,10 @@ pub struct SimplicialMesh<const N: usize> {
 /// A triangle mesh in space.
 pub type SurfaceMesh = SimplicialMesh<3>;
 
+/// A tetrahedral mesh; the fourth vertex of an element lies on the side of its first three from which
+/// they run clockwise (positive volume).
+pub type SolidMesh = SimplicialMesh<4>;
+
 /// "1 face", "2 faces": a count and its noun.
 pub(crate) fn counted(count: usize, noun: &str) -> String {
     if count == 1 {

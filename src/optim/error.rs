@@ -11,6 +11,9 @@ pub enum BuildError {
     /// A rest element has no measure.
     #[error("element {index} is degenerate: its measure is {measure:e}")]
     DegenerateElement { index: usize, measure: f64 },
+    /// A rest element is turned inside out, unlike its neighbours.
+    #[error("element {index} is inverted at rest: its measure is {measure:e}")]
+    InvertedRestElement { index: usize, measure: f64 },
     /// The solver needs an injective start.
     #[error("the start has {inverted} inverted elements, and this method needs none")]
     NotInjectiveStart { inverted: usize },
@@ -37,6 +40,7 @@ impl BuildError {
     pub fn code(&self) -> &'static str {
         match self {
             BuildError::DegenerateElement { .. } => "degenerate-element",
+            BuildError::InvertedRestElement { .. } => "inverted-rest-element",
             BuildError::NotInjectiveStart { .. } => "not-injective-start",
             BuildError::InvalidOption { .. } => "invalid-option",
             BuildError::WrongLength { .. } => "wrong-length",

@@ -134,10 +134,16 @@ impl StepReport {
     }
 
     /// Sets the status at the end of a step that began with the energy `before`: converged, if it `may`
-    /// be and |ΔE|/E or |∇E| is below `tolerance`.
-    pub fn settle(&mut self, before: f64, may: bool, tolerance: f64, max_iterations: usize) {
+    /// be and |ΔE|/(|E| + floor) or |∇E| is below `tolerance`.
+    pub fn settle(
+        &mut self,
+        (before, floor): (f64, f64),
+        may: bool,
+        tolerance: f64,
+        max_iterations: usize,
+    ) {
         let change = (self.energy - before).abs();
-        self.status = if may && change < tolerance * self.energy.abs() {
+        self.status = if may && change < tolerance * (self.energy.abs() + floor) {
             Status::Converged(Criterion::EnergyChange)
         } else if may && self.gradient_norm < tolerance {
             Status::Converged(Criterion::GradientNorm)

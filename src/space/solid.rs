@@ -105,10 +105,7 @@ impl Space for Solid {
     }
 
     #[inline(always)]
-    fn svd_of_polar<L: Lane>(
-        _: [L; 9],
-        polar: SolidSvd<L>,
-    ) -> ([L; 3], (Columns<L>, Columns<L>)) {
+    fn svd_of_polar<L: Lane>(_: [L; 9], polar: SolidSvd<L>) -> ([L; 3], (Columns<L>, Columns<L>)) {
         (polar.sigma, (polar.u, polar.v))
     }
 

@@ -55,10 +55,7 @@ impl<S: Space> Coupling<S> for RotationAware {
         S::symmetric_norm_squared(z)
     }
     #[inline(always)]
-    fn svd<L: Lane>(
-        f: S::Gradient<L>,
-        polar: S::Polar<L>,
-    ) -> (S::Sigma<L>, S::Singularframe<L>) {
+    fn svd<L: Lane>(f: S::Gradient<L>, polar: S::Polar<L>) -> (S::Sigma<L>, S::Singularframe<L>) {
         S::svd_of_polar(f, polar)
     }
     #[inline(always)]

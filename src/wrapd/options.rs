@@ -35,6 +35,17 @@ impl Reweighting {
         delay_folded: 50,
     };
 
+    /// The values for quasi-statics (§6.1).
+    pub const QUASI_STATIC: Self = Self {
+        threshold: 1.5,
+        least: 0.1,
+        most: 10.0,
+        growth: 1.0,
+        cap: 10.0,
+        delay: 50,
+        delay_folded: 50,
+    };
+
     /// β_max(k) of (24b), k counted so that the first reweighting iteration of a start without delay is
     /// 1.
     pub fn most_at(&self, iteration: usize) -> f64 {

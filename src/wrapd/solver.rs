@@ -373,7 +373,7 @@ impl Wrapd {
         self.report.lbfgs_iterations = if self.shape.linear { 0 } else { count };
         self.report.reweighted = reweighted;
         self.report.settle(
-            before,
+            (before, self.shape.constants.floor),
             injective && self.was_injective,
             self.options.tolerance,
             self.options.max_iterations,

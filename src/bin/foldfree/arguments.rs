@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use foldfree::deformation::{DeformationMethod, DeformationOptions, Material};
 use foldfree::mesh::Shape;
 use foldfree::parameterization::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use serde::de::DeserializeOwned;
@@ -21,6 +22,8 @@ pub struct Arguments {
 pub enum Command {
     /// Flatten a triangle mesh.
     Parameterize(Parameterize),
+    /// Deform an elastic solid under pins.
+    Deform(Deform),
     /// Check a map exactly: folds, overlaps, distortion.
     Check(Check),
     /// Make a sample mesh.
@@ -77,6 +80,73 @@ pub struct Parameterize {
     pub quiet: bool,
 }
 
+/// Deform an elastic solid to the minimum of its energy; exit code 2 when it did not converge.
+#[derive(Debug, Args)]
+pub struct Deform {
+    /// Rest shape: .node and .ele (either name stands for both), also with .gz behind; INIT if left out.
+    #[arg(long, value_name = "R")]
+    pub rest: Option<PathBuf>,
+    /// Where it starts: .node, also with .gz behind. May be inverted.
+    #[arg(long, value_name = "I")]
+    pub init: PathBuf,
+    /// Vertices held where they start: a text file of indices, the first vertex being 0.
+    #[arg(long, value_name = "P")]
+    pub pins: Option<PathBuf>,
+    /// Elastic energy.
+    #[arg(long, default_value = "neo-hookean", value_parser = PossibleValuesParser::new(MATERIALS))]
+    pub energy: String,
+    /// Young's modulus (neo-hookean).
+    #[arg(long, value_name = "E", default_value_t = 1e7)]
+    pub young: f64,
+    /// Poisson's ratio (neo-hookean).
+    #[arg(long, value_name = "N", default_value_t = 0.45)]
+    pub poisson: f64,
+    /// How.
+    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd"]))]
+    pub method: DeformationMethod,
+    /// Stop after this many iterations; 0: the start is the result.
+    #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]
+    pub iterations: usize,
+    /// Stop when the change of the energy, relative to |E| + 1, is below this.
+    #[arg(long, value_name = "T", default_value_t = DeformationOptions::default().tolerance, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Threads; 0: as many as the machine has.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub threads: usize,
+    /// Write the deformed vertices: .node or .node.gz.
+    #[arg(long, value_name = "OUT.node")]
+    pub out: Option<PathBuf>,
+    /// Write what happened, iteration by iteration, as JSON.
+    #[arg(long, value_name = "REPORT.json")]
+    pub report: Option<PathBuf>,
+    /// Compare with a solution, a .node of the same vertices: ‖x − x*‖/‖x₀ − x*‖.
+    #[arg(long, value_name = "SOLUTION.node")]
+    pub reference: Option<PathBuf>,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+impl Deform {
+    /// The library's options.
+    pub fn options(&self) -> DeformationOptions {
+        let material = match self.energy.as_str() {
+            "arap" => Material::Arap,
+            "symmetric-dirichlet" => Material::SymmetricDirichlet,
+            _ => Material::NeoHookean {
+                young: self.young,
+                poisson: self.poisson,
+            },
+        };
+        DeformationOptions {
+            material,
+            method: self.method,
+            tolerance: self.tolerance,
+            max_iterations: self.iterations,
+        }
+    }
+}
+
 /// Check a map exactly; exit code 2 when it folds (a triangle is inverted or degenerate).
 #[derive(Debug, Args)]
 pub struct Check {
@@ -114,6 +184,7 @@ pub struct Generate {
 const METHODS: &[&str] = &[
     "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
 ];
+const MATERIALS: [&str; 3] = ["neo-hookean", "arap", "symmetric-dirichlet"];
 const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
 const STARTS: &[&str] = &[
     "automatic",

@@ -38,7 +38,7 @@ pub fn format(path: &Path) -> Result<Format, Failure> {
 }
 
 /// All bytes of a file, decompressed if they begin as gzip does.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, Failure> {
     let of_system = |error: std::io::Error| Failure::of_system(path, &error);
     let file = File::open(path).map_err(of_system)?;
     let length = file.metadata().map_err(of_system)?.len();

@@ -5,6 +5,7 @@
 
 mod arguments;
 mod check;
+mod deform;
 mod failure;
 mod files;
 mod generate;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.command {
         Command::Parameterize(options) => parameterize::run(options),
+        Command::Deform(options) => deform::run(options),
         Command::Check(options) => check::run(options),
         Command::Generate(options) => generate::run(options),
     }

@@ -53,6 +53,9 @@ pub struct Iteration {
     pub largest_sigma: f64,
     pub lbfgs_iterations: usize,
     pub reweighted: bool,
+    /// ‖x − x*‖/‖x₀ − x*‖ against the reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub position_error: Option<f64>,
     pub phases: Vec<IterationPhase>,
 }
 
@@ -81,9 +84,33 @@ impl From<&StepReport> for Iteration {
             largest_sigma: step.largest_sigma,
             lbfgs_iterations: step.lbfgs_iterations,
             reweighted: step.reweighted,
+            position_error: None,
             phases: step.phases.iter().map(phase).collect(),
         }
     }
+}
+
+/// The report of `deform`.
+#[derive(Debug, Serialize)]
+pub struct DeformReport {
+    pub program: &'static str,
+    pub rest: String,
+    pub init: String,
+    /// `converged`, `max-iterations`, `stalled`.
+    pub status: &'static str,
+    /// What made it converge.
+    pub criterion: Option<String>,
+    #[serde(serialize_with = "snake_keys")]
+    pub options: foldfree::deformation::DeformationOptions,
+    pub threads: usize,
+    pub vertices: usize,
+    pub tetrahedra: usize,
+    pub pins: usize,
+    pub notes: Vec<String>,
+    pub setup_seconds: f64,
+    /// Seconds of all iterations.
+    pub seconds: f64,
+    pub iterations: Vec<Iteration>,
 }
 
 /// The report of `check`.

@@ -10,10 +10,12 @@ mod polygon;
 mod scan;
 #[cfg(test)]
 mod tests;
+mod tetgen;
 
 use super::{SurfaceMesh, counted};
 pub use error::{ParseError, ParseErrorKind};
 use glam::DVec2;
+pub use tetgen::{Nodes, read_ele, read_node, write_ele, write_node};
 
 /// A file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -1,0 +1,189 @@
+//! `foldfree deform`.
+
+use crate::arguments::Deform;
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::report::{self, DeformReport, Iteration};
+use crate::{Outcome, files, say};
+use foldfree::deformation::Deformation;
+use foldfree::mesh::SolidMesh;
+use foldfree::mesh::io::{read_ele, read_node, write_node};
+use foldfree::optim::{CancelToken, Solver, Status, Stopwatch};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+/// Reads, deforms, writes, reports.
+pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
+    let options = arguments.options();
+    for path in [&arguments.out, &arguments.report].into_iter().flatten() {
+        files::check_writable(path)?;
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads)
+        .build_global()
+        .map_err(Failure::new)?;
+    let rest_path = arguments.rest.as_ref().unwrap_or(&arguments.init);
+    let rest = read_solid(rest_path)?;
+    let start = read_positions(&arguments.init)?;
+    if start.len() != rest.positions.len() {
+        let (found, expected) = (start.len(), rest.positions.len());
+        let what = format!("has {found} vertices, the rest shape {expected}");
+        return Err(Failure::of_file(&arguments.init, what));
+    }
+    let pins = match &arguments.pins {
+        Some(path) => read_pins(path, start.len())?,
+        None => Vec::new(),
+    };
+    let reference = match &arguments.reference {
+        Some(path) => {
+            let solution = read_positions(path)?;
+            if solution.len() != start.len() {
+                let what = format!("has {} vertices, the start {}", solution.len(), start.len());
+                return Err(Failure::of_file(path, what));
+            }
+            Some(solution)
+        }
+        None => None,
+    };
+    let mut deformation = Deformation::new(&rest, &start, &pins, &options).map_err(Failure::new)?;
+    if !arguments.quiet {
+        deformation.notes().iter().for_each(|note| say(note));
+    }
+
+    let distance = |positions: &[f64], solution: &[DVec3]| {
+        let positions = positions.as_chunks::<3>().0.iter();
+        let squares = positions
+            .zip(solution)
+            .map(|(&p, s)| DVec3::from_array(p).distance_squared(*s));
+        squares.sum::<f64>().sqrt()
+    };
+    let mut progress = Progress::new(arguments.quiet, options.tolerance, options.max_iterations);
+    let mut iterations = Vec::new();
+    let first = reference
+        .as_ref()
+        .map(|solution| distance(deformation.solver().positions(), solution));
+    let mut observe = |solver: &dyn Solver| {
+        let mut iteration = Iteration::from(solver.report());
+        iteration.position_error = match (&reference, first) {
+            (Some(solution), Some(first)) => Some(distance(solver.positions(), solution) / first),
+            _ => None,
+        };
+        iterations.push(iteration);
+        progress.show(solver.report());
+    };
+    let cancel = CancelToken::default();
+    let clock = Stopwatch::start();
+    let status = foldfree::optim::run(deformation.solver_mut(), &mut observe, &cancel)
+        .map_err(Failure::new)?;
+    let elapsed = clock.seconds();
+    progress.finish();
+
+    if let Some(path) = &arguments.out {
+        files::write(path, &write_node(&deformation.positions()))?;
+    }
+    let last = deformation.solver().report().clone();
+    if !arguments.quiet {
+        say(&format!(
+            "{} after {} iterations: {:.3} s to set up, {elapsed:.3} s to solve; energy {:.10e}, {} inverted.",
+            status.name(),
+            last.iteration,
+            deformation.setup_seconds(),
+            last.energy,
+            last.inverted,
+        ));
+        if let Some(error) = iterations.last().and_then(|i| i.position_error) {
+            say(&format!("position error against the reference: {error:e}"));
+        }
+    }
+    if let Some(path) = &arguments.report {
+        let report = DeformReport {
+            program: report::PROGRAM,
+            rest: rest_path.display().to_string(),
+            init: arguments.init.display().to_string(),
+            status: status.name(),
+            criterion: report::criterion(status),
+            options,
+            threads: rayon::current_num_threads(),
+            vertices: rest.positions.len(),
+            tetrahedra: rest.simplices.len(),
+            pins: pins.len(),
+            notes: deformation.notes().to_vec(),
+            setup_seconds: deformation.setup_seconds(),
+            seconds: last.seconds,
+            iterations,
+        };
+        files::write(path, &report::to_json(&report)?)?;
+    }
+    Ok(match status {
+        Status::Converged(_) => Outcome::Done,
+        _ => Outcome::NotReached,
+    })
+}
+
+/// The same path with another ending before an optional .gz; the one that exists, compressed or not.
+fn beside(path: &Path, ending: &str) -> Option<PathBuf> {
+    let text = path.to_string_lossy();
+    let stem = text.strip_suffix(".gz").unwrap_or(&text);
+    let stem = stem
+        .strip_suffix(".node")
+        .or_else(|| stem.strip_suffix(".ele"))?;
+    let candidates = ["", ".gz"].map(|packed| PathBuf::from(format!("{stem}.{ending}{packed}")));
+    let existing = candidates.iter().find(|p| p.exists());
+    Some(existing.unwrap_or(&candidates[0]).clone())
+}
+
+fn pair(path: &Path) -> Result<[PathBuf; 2], Failure> {
+    match (beside(path, "node"), beside(path, "ele")) {
+        (Some(node), Some(ele)) => Ok([node, ele]),
+        _ => {
+            let what = "the format is not known by this name (known: .node, .ele, also with .gz)";
+            Err(Failure::of_file(path, what))
+        }
+    }
+}
+
+fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
+    let [node, _] = pair(path)?;
+    let bytes = files::read_bytes(&node)?;
+    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
+    Ok(nodes.positions)
+}
+
+fn read_solid(path: &Path) -> Result<SolidMesh, Failure> {
+    let [node, ele] = pair(path)?;
+    let bytes = files::read_bytes(&node)?;
+    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
+    let bytes = files::read_bytes(&ele)?;
+    read_ele(&bytes, nodes).map_err(|error| Failure::of_file(&ele, error))
+}
+
+/// One 0-based vertex index a line; empty lines and what follows a # are passed over.
+fn read_pins(path: &Path, vertices: usize) -> Result<Vec<u32>, Failure> {
+    let bytes = files::read_bytes(path)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let mut pins = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or("").trim();
+        if line.is_empty() {
+            continue;
+        }
+        match line.parse::<u32>() {
+            Ok(pin) if (pin as usize) < vertices => pins.push(pin),
+            Ok(pin) => {
+                let what = format!(
+                    "line {}: vertex {pin} of {vertices} (the first is 0)",
+                    number + 1
+                );
+                return Err(Failure::of_file(path, what));
+            }
+            Err(_) => {
+                let what = format!(
+                    "line {}: expected a vertex index, found {line:?}",
+                    number + 1
+                );
+                return Err(Failure::of_file(path, what));
+            }
+        }
+    }
+    Ok(pins)
+}

@@ -1,0 +1,7 @@
+//! Quasi-static deformation of elastic solids: the minimum of an energy under pins (paper §6.1).
+
+mod options;
+mod problem;
+
+pub use options::{DeformationMethod, DeformationOptions, Material};
+pub use problem::Deformation;

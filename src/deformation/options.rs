@@ -1,0 +1,75 @@
+//! What a deformation is to be like.
+
+use crate::optim::BuildError;
+
+/// The elastic energy of a solid.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(tag = "energy", rename_all = "kebab-case")]
+pub enum Material {
+    /// Neo-Hookean elasticity.
+    NeoHookean {
+        /// Young's modulus, > 0, in any unit of pressure.
+        young: f64,
+        /// Poisson's ratio, below 0.5.
+        poisson: f64,
+    },
+    /// As rigid as possible.
+    Arap,
+    /// Symmetric Dirichlet: a barrier against inversion.
+    SymmetricDirichlet,
+}
+
+/// How the energy is minimised: the four curves of the paper's figure 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeformationMethod {
+    /// Rotation-aware, with dynamic reweighting.
+    Wrapd,
+    /// Rotation-aware, with rest weights.
+    RAdmm,
+    /// With dynamic reweighting only.
+    WAdmm,
+    /// Neither (Overby et al. 2017).
+    AdmmPd,
+}
+
+/// Options of [`super::Deformation`]. `Default` is the paper's choice for quasi-statics (§6.1, §7.1).
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct DeformationOptions {
+    /// What the solid is made of.
+    pub material: Material,
+    /// The solver.
+    pub method: DeformationMethod,
+    /// Stop when |ΔE|/(|E| + 1) is below this.
+    pub tolerance: f64,
+    /// Stop after this many iterations.
+    pub max_iterations: usize,
+}
+
+impl Default for DeformationOptions {
+    fn default() -> Self {
+        Self {
+            material: Material::NeoHookean {
+                young: 1e7,
+                poisson: 0.45,
+            },
+            method: DeformationMethod::Wrapd,
+            tolerance: 1e-11,
+            max_iterations: 5000,
+        }
+    }
+}
+
+impl DeformationOptions {
+    /// Checks the ranges; those of the material are checked when it is made.
+    pub fn validate(&self) -> Result<(), BuildError> {
+        if !(self.tolerance.is_finite() && self.tolerance >= 0.0) {
+            return Err(BuildError::InvalidOption {
+                option: "tolerance",
+                what: "must be finite and not negative".into(),
+            });
+        }
+        Ok(())
+    }
+}
