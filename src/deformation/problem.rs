@@ -194,7 +194,7 @@ fn build<E: Energy<Solid>>(
         reweighting,
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
-        restart_duals: false,
+        restart_duals: true,
         ..Default::default()
     };
     Ok(Box::new(match options.method {

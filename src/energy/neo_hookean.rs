@@ -182,7 +182,16 @@ impl Energy<Solid> for NeoHookean {
     #[inline(always)]
     fn prox<L: Lane>(&self, p: [L; 3], k: L, warm: [L; 3]) -> ([L; 3], u32) {
         let (zero, half) = (k.lift(0.0), k.lift(0.5));
-        let mut s = warm;
+        // the better of the two: the target without its reflection, and where it was
+        let tiny = k.lift(1e-6);
+        let target = [
+            p[0].abs().max(tiny),
+            p[1].abs().max(tiny),
+            p[2].abs().max(tiny),
+        ];
+        let (there, ..) = self.augmented(target, p, k);
+        let (here, ..) = self.augmented(warm, p, k);
+        let mut s = keep(zero.lt(there - here), warm, target);
         let (mut value, mut gradient, mut hessian) = self.augmented(s, p, k);
         let mut count = 0;
         loop {
@@ -194,7 +203,13 @@ impl Energy<Solid> for NeoHookean {
             let moving = (k.lift(1e-8) * (size + k.lift(1e-8))).lt(step);
             let going = s[0].any(moving) && count < MOST_STEPS;
             let slope = gradient[0] * d[0] + gradient[1] * d[1] + gradient[2] * d[2];
+            // with two negative stretches J would be positive again: only the last may change sign
             let mut t = k.lift(1.0);
+            for i in 0..2 {
+                let back = -d[i];
+                let reach = k.lift(0.9) * s[i] / back;
+                t = t.min(zero.select(zero.lt(back), reach, t));
+            }
             let mut next;
             let mut halvings = 0;
             loop {
