@@ -52,22 +52,23 @@ pub trait Lane: Scalar {
     /// every width. Anything for other arguments.
     #[inline(always)]
     fn ln(self) -> Self {
-        // ln m = 2 artanh s, s = (m−1)/(m+1): the odd series to s²¹, since s² < 0.0295
+        // with f = m − 1 and s = f/(2+f): ln m = 2 artanh s = f − f²/2 + s (f²/2 + R), where
+        // R = 2s²/3 + 2s⁴/5 + …, to s²⁰ since s² < 0.0295; f is exact, and leads
         let (m, e) = self.mantissa_exponent();
-        let one = self.lift(1.0);
-        let s = (m - one) / (m + one);
+        let f = m - self.lift(1.0);
+        let s = f / (self.lift(2.0) + f);
         let square = s * s;
-        let mut sum = self.lift(1.0 / 21.0);
+        let mut sum = self.lift(2.0 / 21.0);
         let mut power = 19.0;
         while power > 2.0 {
-            sum = sum * square + self.lift(1.0 / power);
+            sum = sum * square + self.lift(2.0 / power);
             power -= 2.0;
         }
-        let twice = s + s;
+        let half = self.lift(0.5) * f * f;
         // ln 2 in two parts: the first times an exponent is exact
         let high = e * self.lift(f64::from_bits(0x3FE6_2E42_FEE0_0000));
         let low = e * self.lift(1.908_214_929_270_587_7e-10);
-        high + (twice + (twice * square * sum + low))
+        high - ((half - (s * (half + square * sum) + low)) - f)
     }
 }
 

@@ -100,7 +100,19 @@ fn perpendicular<L: Lane>(n: Three<L>) -> Three<L> {
 pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
     let zero = f[0][0].lift(0.0);
     let one = f[0][0].lift(1.0);
-    let mut a = f;
+    // products of entries must neither vanish nor overflow
+    let mut size = zero;
+    for column in f {
+        size = size.max(column[0].abs().max(column[1].abs()).max(column[2].abs()));
+    }
+    let vanishes = size.lt(zero.lift(1e-300));
+    let size = one.select(vanishes, one, size);
+    let inverse = one / size;
+    let mut a = [
+        scaled(f[0], inverse),
+        scaled(f[1], inverse),
+        scaled(f[2], inverse),
+    ];
     let mut v = identity(zero);
     let negligible = zero.lift(1e-30);
     for _ in 0..MOST_SWEEPS {
@@ -131,7 +143,7 @@ pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
         }
     }
     let (first, second) = (squares[0].sqrt(), squares[1].sqrt());
-    // the direction of a column that vanishes, absolutely or beside the first, is free
+    // the direction of a column that vanishes, or does so beside the first, is free
     let tiny = zero.lift(1e-150);
     let no_first = first.lt(tiny);
     let axis = [one, zero, zero];
@@ -148,7 +160,7 @@ pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
     let u1 = choose(no_second, perpendicular(u0), u1);
     let u2 = cross(u0, u1);
     let last = dot(u2, a[2]);
-    ([first, second, last], [u0, u1, u2], v)
+    (scaled([first, second, last], size), [u0, u1, u2], v)
 }
 
 /// Eigenvalues, descending, and a proper rotation of eigenvectors of the symmetric matrix
