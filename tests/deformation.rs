@@ -204,7 +204,7 @@ fn invariance() {
     }
     let n = start.len() as u32;
     let other = |v: u32| (v * 7 + 3) % n;
-    assert!(n % 7 != 0);
+    assert!(!n.is_multiple_of(7));
     let mut shuffled = mesh.clone();
     let mut from = start.clone();
     for v in 0..n {

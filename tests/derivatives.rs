@@ -5,10 +5,10 @@ mod plane_oracle;
 
 use foldfree::embedding::tutte;
 use foldfree::energy::total::{deformation_gradient, spread, total};
-use foldfree::energy::{Arap, Energy, SymmetricDirichlet};
+use foldfree::energy::{Arap, Energy, NeoHookean, SymmetricDirichlet};
 use foldfree::geometry::{RestShape, surface_area};
 use foldfree::mesh::{Shape, generate, prepare};
-use foldfree::space::{Lane, Plane, Scalar, Space};
+use foldfree::space::{Lane, Plane, Scalar, Solid, Space};
 use num_dual::{DualNum, HyperDual64};
 use plane_oracle::{Matrix, full, matrix, stretch_residual};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -68,6 +68,40 @@ impl Lane for Dual {
     }
     fn any(self, mask: bool) -> bool {
         mask
+    }
+    fn mantissa_exponent(self) -> (Dual, Dual) {
+        unreachable!("only the logarithm asks for it")
+    }
+    fn ln(self) -> Dual {
+        Dual(DualNum::ln(&self.0))
+    }
+}
+
+/// Gradient and K_e of neo-Hookean elasticity, on either side of J = 0.1 and reflected.
+#[test]
+fn neo_hookean_in_the_singular_values() {
+    let energy = NeoHookean::new(2.0, 0.4).unwrap();
+    for s in [
+        [1.3, 0.9, 0.7],
+        [2.0, 1.0, 0.04],
+        [1.1, 0.8, -0.3],
+        [3.0, 2.0, 1.5],
+    ] {
+        let gradient = Energy::<Solid>::gradient(&energy, s);
+        let mut hessian = [[0.0; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                let value = Energy::<Solid>::density(&energy, dual(s, i, j)).0;
+                hessian[i][j] = value.eps1eps2;
+                if j == i {
+                    close(gradient[i], value.eps1, value.eps1.abs().max(1.0), 1e-13);
+                }
+            }
+        }
+        let [a, b, c] = hessian;
+        let (values, _) = Solid::eigen::<f64>([a[0], b[1], c[2], a[1], a[2], b[2]]);
+        let stiffness = Energy::<Solid>::effective_stiffness(&energy, s);
+        close(stiffness, values[0], values[0].abs().max(1.0), 1e-12);
     }
 }
 
