@@ -72,7 +72,8 @@ fn symmetric_dirichlet_from_any_warm_start() {
         for p in spread(-6..=6) {
             let exact = root_by_bisection(p, k);
             for warm in (-8..=8).map(|e| 10f64.powi(e)) {
-                let ([z, other], count) = SymmetricDirichlet.prox([p, p], k, [warm, exact]);
+                let ([z, other], count) =
+                    Energy::<Plane>::prox(&SymmetricDirichlet, [p, p], k, [warm, exact]);
                 let context = format!("k {k:e}, p {p:e}, warm {warm:e}: {z:e} of {exact:e}");
                 // z is the root of a z − b = 2 z⁻³, whose condition number is at most 1 in a and b:
                 // a few roundings are all that can be lost
@@ -99,7 +100,12 @@ fn warm_starts_are_worth_it() {
     for k in stiffnesses() {
         for p in spread(-2..=2) {
             let exact = root_by_bisection(p, k);
-            let (_, count) = SymmetricDirichlet.prox([p, p], k, [exact * 1.001, exact * 0.999]);
+            let (_, count) = Energy::<Plane>::prox(
+                &SymmetricDirichlet,
+                [p, p],
+                k,
+                [exact * 1.001, exact * 0.999],
+            );
             assert!(count <= 3, "k {k:e}, p {p:e}: {count}");
         }
     }
@@ -109,7 +115,7 @@ fn warm_starts_are_worth_it() {
 fn arap_is_the_weighted_mean() {
     for k in stiffnesses() {
         for p in spread(-6..=6) {
-            let ([z, _], _) = Arap.prox([p, 0.0], k, [1.0, 1.0]);
+            let ([z, _], _) = Energy::<Plane>::prox(&Arap, [p, 0.0], k, [1.0, 1.0]);
             // stationary: 2 (z − 1) + k (z − p) = 0, up to the rounding of its terms
             let size = 2.0 + 2.0 * z.abs() + k * (z.abs() + p.abs());
             let residual = 2.0 * (z - 1.0) + k * (z - p);
@@ -228,7 +234,7 @@ impl WithSimd for SideBySide<'_> {
                 #[inline(always)]
                 |row| Pack::load(simd, &row[at..]),
             );
-            let (z, _) = SymmetricDirichlet.prox([p, -p], k, [warm, warm]);
+            let (z, _) = Energy::<Plane>::prox(&SymmetricDirichlet, [p, -p], k, [warm, warm]);
             z[0].max(z[1]).store(&mut out[at..]);
         }
         out
@@ -251,7 +257,8 @@ fn a_register_gives_the_bits_of_its_elements() {
         warm: &warm,
     });
     for (i, packed) in packed.iter().enumerate() {
-        let ([a, b], _) = SymmetricDirichlet.prox([p[i], -p[i]], k[i], [warm[i]; 2]);
+        let ([a, b], _) =
+            Energy::<Plane>::prox(&SymmetricDirichlet, [p[i], -p[i]], k[i], [warm[i]; 2]);
         let alone = Lane::max(a, b);
         assert_eq!(
             packed.to_bits(),
