@@ -32,8 +32,7 @@ pub struct SimplicialMesh<const N: usize> {
 /// A triangle mesh in space.
 pub type SurfaceMesh = SimplicialMesh<3>;
 
-/// A tetrahedral mesh; the fourth vertex of an element lies on the side of its first three from which
-/// they run clockwise (positive volume).
+/// A tetrahedral mesh; an element (a, b, c, d) has positive volume: det [b−a, c−a, d−a] > 0.
 pub type SolidMesh = SimplicialMesh<4>;
 
 /// "1 face", "2 faces": a count and its noun.
