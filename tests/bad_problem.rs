@@ -51,6 +51,7 @@ fn problems_whose_parts_do_not_fit() {
         rest: &rest,
         start: &start,
         pins: &[4],
+        external: None,
     };
     assert!(Wrapd::new::<Plane, RotationAware, _>(good, Arap, WrapdOptions::default()).is_ok());
 
@@ -126,6 +127,7 @@ fn everything_pinned() {
         rest: &rest,
         start: &start,
         pins: &pins,
+        external: None,
     };
     let options = WrapdOptions::default();
     let mut solver =
@@ -196,6 +198,7 @@ fn solver_options_out_of_range() {
         rest: &rest,
         start: &start,
         pins: &[0],
+        external: None,
     };
     for options in bad {
         assert!(options.validate().is_err(), "{options:?}");

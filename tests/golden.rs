@@ -208,6 +208,7 @@ fn a_mirrored_start_is_turned_back() {
             rest: &rest,
             start: &mirrored,
             pins: &[0],
+            external: None,
         };
         // as `Parameterization` does for starts that fold
         let reweighting = Reweighting {

@@ -2,6 +2,8 @@
 
 mod options;
 mod problem;
+mod supports;
 
 pub use options::{DeformationMethod, DeformationOptions, Material};
-pub use problem::Deformation;
+pub use problem::{Deformation, Target};
+pub(crate) use supports::Supports;

@@ -41,6 +41,9 @@ pub struct DeformationOptions {
     pub material: Material,
     /// The solver.
     pub method: DeformationMethod,
+    /// How hard targets pull at free vertices, relative to how hard the body holds on to the vertex (the
+    /// diagonal of its stiffness matrix at rest), > 0.
+    pub target_stiffness: f64,
     /// Stop when |ΔE|/(|E| + 1) is below this.
     pub tolerance: f64,
     /// Stop after this many iterations.
@@ -55,6 +58,7 @@ impl Default for DeformationOptions {
                 poisson: 0.45,
             },
             method: DeformationMethod::Wrapd,
+            target_stiffness: 10.0,
             tolerance: 1e-11,
             max_iterations: 5000,
         }
@@ -68,6 +72,12 @@ impl DeformationOptions {
             return Err(BuildError::InvalidOption {
                 option: "tolerance",
                 what: "must be finite and not negative".into(),
+            });
+        }
+        if !(self.target_stiffness.is_finite() && self.target_stiffness > 0.0) {
+            return Err(BuildError::InvalidOption {
+                option: "targetStiffness",
+                what: "must be finite and positive".into(),
             });
         }
         Ok(())

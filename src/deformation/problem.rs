@@ -1,20 +1,32 @@
 //! A solid, made ready, and the solver that deforms it.
 
-use super::{DeformationMethod, DeformationOptions, Material};
+use super::{DeformationMethod, DeformationOptions, Material, Supports};
 use crate::Error;
 use crate::energy::{Arap, Energy, NeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
-use crate::mesh::{MeshError, SolidMesh, counted};
-use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
+use crate::mesh::{MeshError, SolidMesh};
+use crate::optim::{BuildError, Deformer, Field, Solver, Spring, StepReport, Stopwatch};
 use crate::space::Solid;
-use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
+use crate::wrapd::{External, Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec3;
+
+/// Where a vertex is wanted. A pinned vertex is moved there, a free one pulled by a spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The vertex.
+    pub vertex: u32,
+    /// Where to, in the units of the mesh.
+    pub position: DVec3,
+}
 
 /// A deformation in progress.
 pub struct Deformation {
     notes: Vec<String>,
     setup_seconds: f64,
-    solver: Box<dyn Solver>,
+    supports: Supports,
+    /// The springs' stiffness, a vertex.
+    spring_stiffness: Vec<f64>,
+    solver: Box<dyn Deformer>,
 }
 
 impl Deformation {
@@ -28,6 +40,20 @@ impl Deformation {
         rest: &SolidMesh,
         start: &[DVec3],
         pins: &[u32],
+        options: &DeformationOptions,
+    ) -> Result<Self, Error> {
+        Self::with_targets(rest, start, pins, &[], options)
+    }
+
+    /// The same with targets from the beginning: a component with a target needs no pin.
+    ///
+    /// # Errors
+    /// As [`Self::new`] and [`Self::set_targets`].
+    pub fn with_targets(
+        rest: &SolidMesh,
+        start: &[DVec3],
+        pins: &[u32],
+        targets: &[Target],
         options: &DeformationOptions,
     ) -> Result<Self, Error> {
         let clock = Stopwatch::start();
@@ -49,25 +75,61 @@ impl Deformation {
         if turned {
             notes.push("the mesh was inside out: all tetrahedra were turned".into());
         }
-        let held = held(rest, pins, &mut notes)?;
-        let positions: Vec<f64> = start.iter().flat_map(|p| p.to_array()).collect();
+        let supports = Supports::new(rest, pins, &mut notes)?;
+        let material = AnyMaterial::new(options.material)?;
+        let mut spring_stiffness = vec![0.0; start.len()];
+        for e in 0..shape.len() {
+            for (corner, &v) in shape.simplex(e).iter().enumerate() {
+                spring_stiffness[v as usize] += options.target_stiffness
+                    * material.rest_stiffness()
+                    * shape.measure[e]
+                    * shape.hat_product(e, corner, corner);
+            }
+        }
+        let mut positions = start.to_vec();
+        let (moved, springs) = split(targets, &supports, &spring_stiffness)?;
+        for (vertex, point) in moved {
+            positions[vertex as usize] = DVec3::from_array(point);
+        }
+        let positions: Vec<f64> = positions.iter().flat_map(|p| p.to_array()).collect();
+        let external = External {
+            springs,
+            ..Default::default()
+        };
         let problem = Problem {
             rest: &shape,
             start: &positions,
-            pins: &held,
+            pins: &supports.held(),
+            external: Some(&external),
         };
-        let solver = match options.material {
-            Material::NeoHookean { young, poisson } => {
-                build(problem, NeoHookean::new(young, poisson)?, options)
-            }
-            Material::Arap => build(problem, Arap, options),
-            Material::SymmetricDirichlet => build(problem, SymmetricDirichlet, options),
+        let solver = match material {
+            AnyMaterial::NeoHookean(energy) => build(problem, energy, options),
+            AnyMaterial::Arap(energy) => build(problem, energy, options),
+            AnyMaterial::SymmetricDirichlet(energy) => build(problem, energy, options),
         }?;
         Ok(Self {
             notes,
             setup_seconds: clock.seconds(),
+            supports,
+            spring_stiffness,
             solver,
         })
+    }
+
+    /// Replaces all targets while the solver runs: pinned vertices named here are moved, springs pull at
+    /// the free ones, and springs of before are gone. The iterate is kept.
+    ///
+    /// # Errors
+    /// `InvalidOption` for a target that is not finite, out of range or given twice, and if a component
+    /// were left without pin or target; nothing has changed then.
+    pub fn set_targets(&mut self, targets: &[Target]) -> Result<(), Error> {
+        let (moved, springs) = split(targets, &self.supports, &self.spring_stiffness)?;
+        Ok(self.solver.retarget(&moved, &springs)?)
+    }
+
+    /// A field at the newest iterate, one value a tetrahedron.
+    pub fn field(&self, field: Field) -> Vec<f32> {
+        self.solver.field(field)
     }
 
     /// What was mended or chosen, in words.
@@ -121,73 +183,81 @@ fn check_indices(rest: &SolidMesh) -> Result<(), MeshError> {
     Ok(())
 }
 
-/// The vertices that are held: the pins, and vertices that belong to no tetrahedron. Every component
-/// needs a pin.
-fn held(rest: &SolidMesh, pins: &[u32], notes: &mut Vec<String>) -> Result<Vec<u32>, BuildError> {
-    let n = rest.positions.len();
-    let wrong = |what: String| {
+/// Targets as moves of held vertices and springs on free ones.
+#[allow(clippy::type_complexity)]
+fn split(
+    targets: &[Target],
+    supports: &Supports,
+    stiffness: &[f64],
+) -> Result<(Vec<(u32, [f64; 3])>, Vec<Spring>), BuildError> {
+    let n = supports.is_held.len();
+    let wrong = |what| {
         Err(BuildError::InvalidOption {
-            option: "pins",
+            option: "targets",
             what,
         })
     };
-    if let Some(&bad) = pins.iter().find(|&&v| v as usize >= n) {
-        return wrong(format!("vertex {bad} of {n} (the first is 0)"));
-    }
-    let mut is_held = vec![false; n];
-    pins.iter().for_each(|&v| is_held[v as usize] = true);
-    let mut root: Vec<u32> = (0..n as u32).collect();
-    let mut used = vec![false; n];
-    for tetrahedron in &rest.simplices {
-        for &v in tetrahedron {
-            used[v as usize] = true;
-            let (a, b) = (find(&mut root, tetrahedron[0]), find(&mut root, v));
-            root[a.max(b) as usize] = a.min(b);
+    let (mut moved, mut springs) = (Vec::new(), Vec::new());
+    let mut has_target = vec![false; n];
+    for &Target { vertex, position } in targets {
+        let v = vertex as usize;
+        if v >= n {
+            return wrong(format!("vertex {v} of {n} (the first is 0)"));
+        }
+        if !position.is_finite() {
+            return wrong(format!("the target of vertex {v} is not finite"));
+        }
+        if has_target[v] {
+            return wrong(format!("vertex {v} has two targets"));
+        }
+        has_target[v] = true;
+        let target = position.to_array();
+        match supports.is_held[v] {
+            true => moved.push((vertex, target)),
+            false => springs.push(Spring {
+                vertex,
+                stiffness: stiffness[v],
+                target,
+            }),
         }
     }
-    let mut has_pin = vec![false; n];
-    for v in 0..n as u32 {
-        let root = find(&mut root, v) as usize;
-        has_pin[root] |= is_held[v as usize];
-    }
-    for v in 0..n as u32 {
-        if used[v as usize] && !has_pin[find(&mut root, v) as usize] {
-            return wrong(format!(
-                "the component of vertex {v} has no pin: it could float away"
-            ));
-        }
-    }
-    let unused = used.iter().filter(|used| !**used).count();
-    if unused > 0 {
-        notes.push(format!(
-            "{} in no tetrahedron: left where they start",
-            counted(unused, "vertex")
-        ));
-    }
-    let held: Vec<u32> = (0..n as u32)
-        .filter(|&v| is_held[v as usize] || !used[v as usize])
-        .collect();
-    if held.len() == n {
-        return wrong("hold all vertices: there is nothing to solve for".into());
-    }
-    Ok(held)
+    supports.check(targets.iter().map(|t| t.vertex))?;
+    Ok((moved, springs))
 }
 
-/// The representative of a vertex's component.
-fn find(root: &mut [u32], v: u32) -> u32 {
-    let mut v = v;
-    while root[v as usize] != v {
-        root[v as usize] = root[root[v as usize] as usize];
-        v = root[v as usize];
+/// A checked material.
+enum AnyMaterial {
+    NeoHookean(NeoHookean),
+    Arap(Arap),
+    SymmetricDirichlet(SymmetricDirichlet),
+}
+
+impl AnyMaterial {
+    fn new(material: Material) -> Result<Self, BuildError> {
+        Ok(match material {
+            Material::NeoHookean { young, poisson } => {
+                Self::NeoHookean(NeoHookean::new(young, poisson)?)
+            }
+            Material::Arap => Self::Arap(Arap),
+            Material::SymmetricDirichlet => Self::SymmetricDirichlet(SymmetricDirichlet),
+        })
     }
-    v
+
+    fn rest_stiffness(&self) -> f64 {
+        match self {
+            Self::NeoHookean(energy) => Energy::<Solid>::constants(energy),
+            Self::Arap(energy) => Energy::<Solid>::constants(energy),
+            Self::SymmetricDirichlet(energy) => Energy::<Solid>::constants(energy),
+        }
+        .rest_stiffness
+    }
 }
 
 fn build<E: Energy<Solid>>(
     problem: Problem,
     energy: E,
     options: &DeformationOptions,
-) -> Result<Box<dyn Solver>, BuildError> {
+) -> Result<Box<dyn Deformer>, BuildError> {
     use DeformationMethod::{AdmmPd, RAdmm, WAdmm, Wrapd as Both};
     let reweighting = matches!(options.method, Both | WAdmm).then_some(Reweighting::QUASI_STATIC);
     let settings = WrapdOptions {

@@ -3,6 +3,7 @@
 
 use super::Energy;
 use crate::geometry::RestShape;
+use crate::optim::Field;
 use crate::space::{Components, Space};
 
 /// A map's energy and what a report says beside it.
@@ -116,5 +117,29 @@ pub fn relative_distortion(sigma: &[f64]) -> f32 {
             (sum / (2.0 * sigma.len() as f64)) as f32
         }
         _ => f32::INFINITY,
+    }
+}
+
+/// The value of a field at an element with these singular values.
+pub fn field_value<S: Space, E: Energy<S>>(energy: E, sigma: S::Sigma<f64>, field: Field) -> f32 {
+    let s = sigma.as_slice();
+    let last = s[S::STRETCHES - 1];
+    if !(last > 0.0) {
+        return f32::INFINITY;
+    }
+    match field {
+        Field::Distortion => relative_distortion(s),
+        Field::Stretch => s[0].max(last.recip()) as f32,
+        Field::Stress => {
+            // principal Cauchy stresses σᵢ ψᵢ/J, of which a sheet has none across it
+            let psi = energy.gradient(sigma);
+            let volume: f64 = s.iter().product();
+            let t = |i: usize| match i < S::STRETCHES {
+                true => s[i] * psi.at(i) / volume,
+                false => 0.0,
+            };
+            let [a, b, c] = [t(0) - t(1), t(1) - t(2), t(2) - t(0)];
+            (0.5 * (a * a + b * b + c * c)).sqrt() as f32
+        }
     }
 }

@@ -17,6 +17,16 @@ pub struct Elimination {
 impl Elimination {
     /// Orders the free ones of `vertices` vertices to keep the Cholesky factor of a Laplacian sparse.
     pub fn new(rest: &RestShape, vertices: usize, pins: &[u32]) -> Self {
+        Self::with_couplings(rest, vertices, pins, &[])
+    }
+
+    /// The same for a matrix that couples further pairs of vertices, too.
+    pub fn with_couplings(
+        rest: &RestShape,
+        vertices: usize,
+        pins: &[u32],
+        couplings: &[(u32, u32, f64)],
+    ) -> Self {
         let mut pinned = vec![false; vertices];
         pins.iter().for_each(|&p| pinned[p as usize] = true);
         let free_vertices: Vec<u32> = (0..vertices as u32)
@@ -30,10 +40,11 @@ impl Elimination {
         for (k, v) in (0..vertices).filter(|&v| pinned[v]).enumerate() {
             slot[v] = (free + k) as u32;
         }
+        let pairs = rest.pairs().map(|(a, b, _)| (a, b));
+        let pairs = pairs.chain(couplings.iter().map(|&(a, b, _)| (a, b)));
         let order = Order::new(
             free,
-            rest.pairs()
-                .map(|(a, b, _)| (slot[a as usize], slot[b as usize])),
+            pairs.map(|(a, b)| (slot[a as usize], slot[b as usize])),
         );
         for (k, &first) in order.unknowns.iter().enumerate() {
             slot[free_vertices[first as usize] as usize] = k as u32;

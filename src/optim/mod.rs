@@ -1,12 +1,14 @@
 //! What every iterative solver shares: status, reports, cancellation, errors.
 
 mod error;
+mod handles;
 pub mod lbfgs;
 mod solver;
 mod stopwatch;
 pub mod vectors;
 
 pub use error::{BuildError, SolveError};
+pub use handles::{Deformer, Field, Spring};
 pub use solver::{
     CancelToken, Criterion, Inspection, Observer, Phase, PhaseKind, Solver, Status, StepReport, run,
 };

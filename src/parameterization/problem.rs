@@ -147,6 +147,7 @@ impl Parameterization {
             rest: &rest,
             start: &positions,
             pins: &pins,
+            external: None,
         };
         let solver: Box<dyn Solver> = match options.method {
             Method::Wrapd | Method::RAdmm | Method::WAdmm | Method::AdmmPd => {

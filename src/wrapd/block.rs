@@ -46,6 +46,8 @@ pub struct Block {
     pub sigma: Rows,
     /// ψ(Z).
     pub z_density: Rows,
+    /// Singular values of F after a pass that evaluates.
+    pub stretch: Rows,
     /// What the last pass added up.
     pub sums: BlockSums,
 }

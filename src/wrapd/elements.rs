@@ -4,8 +4,9 @@
 use super::Coupling;
 use super::block::{Block, BlockSums};
 use super::kernels::{Kernel, Pass};
-use crate::energy::total::relative_distortion;
+use crate::energy::total::field_value;
 use crate::energy::{Constants, Energy};
+use crate::optim::Field;
 use crate::space::{Components, Space, dispatch};
 use core::marker::PhantomData;
 
@@ -56,8 +57,8 @@ pub trait Elements: Send + Sync {
         positions: &[f64],
         forces: &mut [f64],
     ) -> BlockSums;
-    /// The symmetric Dirichlet density of an element at the newest F, relative to an isometry's.
-    fn distortion(&self, block: &Block, element: usize) -> f32;
+    /// The value of a field at an element, after a pass that evaluates.
+    fn field(&self, block: &Block, element: usize, field: Field) -> f32;
 }
 
 /// An energy on a splitting of F.
@@ -93,9 +94,8 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Elements for Model<S, C, E> {
             types: PhantomData,
         })
     }
-    fn distortion(&self, block: &Block, element: usize) -> f32 {
-        let f = S::Gradient::from_fn(|c| block.gradient[c][element]);
-        let (sigma, _) = S::svd::<f64>(f);
-        relative_distortion(sigma.as_slice())
+    fn field(&self, block: &Block, element: usize, field: Field) -> f32 {
+        let sigma = S::Sigma::from_fn(|i| block.stretch[i][element]);
+        field_value::<S, E>(self.energy, sigma, field)
     }
 }

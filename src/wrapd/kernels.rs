@@ -325,6 +325,7 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
                 continue;
             }
             let (sigma, frame) = C::svd(f, aux);
+            store(sigma, &mut block.stretch, at);
             // ∂ψ/∂F = U ψ'(σ) Vᵀ
             let stress = S::from_svd(energy.gradient(sigma), frame);
             let stress = spread::<S, V>(simd, block, stress, area, at);

@@ -48,6 +48,7 @@ pub fn build_blocks(rest: &RestShape, slot: &[u32], shape: &Shape) -> Vec<Block>
                 u: zeros(shape.local),
                 sigma: vec![[1.0; BLOCK]; k],
                 z_density: zeros(1),
+                stretch: zeros(k),
                 sums: Default::default(),
             }
         })

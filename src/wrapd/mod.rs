@@ -12,6 +12,7 @@
 mod block;
 mod coupling;
 mod elements;
+mod external;
 mod kernels;
 mod layout;
 mod options;
@@ -19,6 +20,7 @@ mod problem;
 mod solver;
 
 pub use coupling::{Coupling, Linear, RotationAware};
+pub use external::External;
 pub use options::{Reweighting, WrapdOptions};
 pub use problem::Problem;
 pub use solver::Wrapd;

@@ -1,5 +1,6 @@
 //! What an ADMM solver solves.
 
+use super::External;
 use crate::geometry::RestShape;
 use crate::optim::BuildError;
 
@@ -10,8 +11,10 @@ pub struct Problem<'a> {
     pub rest: &'a RestShape,
     /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
     pub start: &'a [f64],
-    /// Vertices held at their start; at least one, so that the system is definite.
+    /// Vertices held at their start; at least one, unless springs hold the rest in place.
     pub pins: &'a [u32],
+    /// Terms beside the elements; `None` also means that springs never come.
+    pub external: Option<&'a External>,
 }
 
 impl Problem<'_> {
@@ -62,7 +65,11 @@ impl Problem<'_> {
                 what: format!("vertex {} is not finite", bad / dimension),
             });
         }
-        if problem.pins.is_empty() || problem.pins.iter().any(|&p| p as usize >= n) {
+        if let Some(external) = problem.external {
+            external.validate(n, dimension, problem.pins)?;
+        }
+        let sprung = problem.external.is_some_and(|e| !e.springs.is_empty());
+        if (problem.pins.is_empty() && !sprung) || problem.pins.iter().any(|&p| p as usize >= n) {
             return Err(BuildError::InvalidOption {
                 option: "pins",
                 what: format!("needs at least one vertex, each below {n}"),

@@ -1,7 +1,10 @@
 //! The iteration of algorithm 1.
 
+mod handles;
+
 use super::block::{BLOCK, Block, BlockSums};
 use super::elements::{Elements, Model, Shape};
+use super::external::Terms;
 use super::kernels::Pass;
 use super::layout::{build_blocks, corner_lists, element_order};
 use super::{Coupling, Problem, WrapdOptions};
@@ -11,7 +14,8 @@ use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
-    BuildError, Inspection, Phase, PhaseKind, SolveError, Solver, Status, StepReport, Stopwatch,
+    BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Status,
+    StepReport, Stopwatch,
 };
 use crate::parallel;
 use crate::space::Space;
@@ -43,6 +47,8 @@ pub struct Wrapd {
     /// Squares of the energy's gradient, summed a chunk of [`VERTICES`].
     squares: Vec<f64>,
     direction: Vec<f64>,
+    /// Terms beside the elements.
+    terms: Option<Terms>,
     matrix: WeightedSum,
     factor: Cholesky,
     history: Lbfgs,
@@ -80,12 +86,26 @@ impl Wrapd {
         let n = problem.start.len() / dimension;
         problem.validate(dimension, shape.stretches)?;
 
-        let elimination = Elimination::new(rest, n, problem.pins);
+        let couplings = problem.external.map_or(&[][..], |e| &e.stiffness);
+        let elimination = Elimination::with_couplings(rest, n, problem.pins, couplings);
         // from here on elements are in the order of their vertices' slots
         let order = element_order(rest, &elimination.slot);
         let rest = &rest.reordered(&order);
-        let mut matrix = WeightedSum::new(elimination.free, &elimination.laplacian(rest));
-        matrix.fill(|_| shape.constants.rest_stiffness);
+        let mut contributions = elimination.laplacian(rest);
+        let terms = problem.external.map(|external| {
+            let constant = rest.len() as u32;
+            let slot = |v: u32| elimination.slot[v as usize];
+            let coupled = external.stiffness.iter();
+            contributions.extend(coupled.map(|&(a, b, k)| (slot(a), slot(b), constant, k)));
+            // springs may come to any vertex
+            let free = 0..elimination.free as u32;
+            contributions.extend(free.map(|s| (s, s, constant + 1 + s, 1.0)));
+            Terms::new(external, &elimination.slot, elimination.free, dimension)
+        });
+        let mut matrix = WeightedSum::new(elimination.free, &contributions);
+        fill(&mut matrix, rest.len(), terms.as_ref(), |_| {
+            shape.constants.rest_stiffness
+        });
         let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.levels)?;
         factor
             .factorize(matrix.matrix())
@@ -119,6 +139,7 @@ impl Wrapd {
             next_gradient: vec![0.0; unknowns],
             squares: vec![0.0; free.div_ceil(VERTICES)],
             direction: vec![0.0; unknowns],
+            terms,
             matrix,
             factor,
             history: Lbfgs::new(options.history),
@@ -126,14 +147,7 @@ impl Wrapd {
             delay: 0,
             was_injective: false,
         };
-        let sums = this.pass(Pass::Last);
-        this.gather(Pass::Last);
-        this.evaluate(sums);
-        if shape.barrier && this.report.inverted > 0 {
-            // there is no Z yet whose energy could stand in
-            this.report.energy = f64::INFINITY;
-        }
-        this.was_injective = this.report.inverted == 0;
+        this.look();
         if let Some(r) = options.reweighting {
             let folded = 100 * this.report.inverted > rest.len();
             this.delay = if folded { r.delay_folded } else { r.delay };
@@ -144,9 +158,24 @@ impl Wrapd {
         Ok(this)
     }
 
+    /// Evaluates positions that were not found by a step.
+    fn look(&mut self) {
+        let sums = self.pass(Pass::Last);
+        self.gather(Pass::Last);
+        self.evaluate(sums);
+        if self.shape.barrier && self.report.inverted > 0 {
+            // there is no Z yet whose energy could stand in
+            self.report.energy = f64::INFINITY;
+        }
+        self.was_injective = self.report.inverted == 0;
+    }
+
     /// Runs one element pass over all blocks and adds up, in the blocks' order.
     fn pass(&mut self, pass: Pass) -> BlockSums {
         let chunk = self.block_forces(pass);
+        if let (Some(terms), Pass::Forces | Pass::Last) = (&mut self.terms, pass) {
+            terms.evaluate(&self.x);
+        }
         let (x, elements, blocks) = (&self.x, &*self.elements, self.blocks.len());
         parallel::for_each_block(
             &mut self.blocks,
@@ -192,6 +221,7 @@ impl Wrapd {
     fn gather_in<const DIM: usize, const STRIDE: usize>(&mut self) {
         let forces = self.forces.as_chunks::<STRIDE>().0;
         let (begin, corners) = (&self.corner_begin, &self.corners);
+        let external = self.terms.as_ref().map(|t| t.gradient.as_chunks::<DIM>().0);
         parallel::for_each_block(
             &mut self.squares,
             &mut self.next_gradient,
@@ -201,6 +231,12 @@ impl Wrapd {
                 for (local, g) in out.as_chunks_mut::<DIM>().0.iter_mut().enumerate() {
                     let v = chunk * VERTICES + local;
                     let mut sum = [0.0; STRIDE];
+                    if let Some(external) = external {
+                        sum[..DIM].copy_from_slice(&external[v]);
+                        if STRIDE > DIM {
+                            sum[DIM..].copy_from_slice(&external[v]);
+                        }
+                    }
                     for &corner in &corners[begin[v] as usize..begin[v + 1] as usize] {
                         for (sum, force) in sum.iter_mut().zip(&forces[corner as usize]) {
                             *sum += force;
@@ -230,7 +266,9 @@ impl Wrapd {
         } else {
             sums.f_energy
         };
-        self.report.energy = self.shape.constants.reported(sum, self.measure);
+        let external = self.terms.as_ref().map_or(0.0, |t| t.energy);
+        let constants = &self.shape.constants;
+        self.report.energy = constants.reported(sum + external, self.measure);
         if barrier_broken {
             self.report.gradient_norm = f64::INFINITY;
         }
@@ -287,6 +325,13 @@ impl Wrapd {
     }
 
     /// Copies the positions by slot to those by vertex.
+    fn publish(&mut self) {
+        match self.shape.dimension {
+            2 => self.copy_positions::<2>(),
+            _ => self.copy_positions::<3>(),
+        }
+    }
+
     fn copy_positions<const DIM: usize>(&mut self) {
         let (slots, x) = (&self.slot, self.x.as_chunks::<DIM>().0);
         let positions = self.positions.as_chunks_mut::<DIM>().0;
@@ -300,9 +345,15 @@ impl Wrapd {
     /// Takes over the candidate weights: U is scaled by w²/w_cand², A refactored, the history cleared.
     fn reweight(&mut self, iteration: usize) -> Result<(), SolveError> {
         parallel::for_each_chunk(&mut self.blocks, 1, |_, block| block[0].take_candidates());
-        let blocks = &self.blocks;
-        self.matrix
-            .fill(|e| blocks[e / BLOCK].stiffness[0][e % BLOCK]);
+        self.refactor(iteration)
+    }
+
+    /// Factors the matrix of the current weights and springs.
+    fn refactor(&mut self, iteration: usize) -> Result<(), SolveError> {
+        let (blocks, terms) = (&self.blocks, self.terms.as_ref());
+        fill(&mut self.matrix, self.order.len(), terms, |e| {
+            blocks[e / BLOCK].stiffness[0][e % BLOCK]
+        });
         self.history.clear();
         self.factor
             .factorize(self.matrix.matrix())
@@ -363,10 +414,7 @@ impl Wrapd {
                 });
             }
         }
-        match dimension {
-            2 => self.copy_positions::<2>(),
-            _ => self.copy_positions::<3>(),
-        }
+        self.publish();
         self.evaluate(sums);
         let injective = self.report.inverted == 0;
         self.report.iteration = k + 1;
@@ -412,17 +460,24 @@ impl Solver for Wrapd {
         &self.report
     }
     fn inspect(&self) -> Inspection {
-        let elements = self.order.len();
-        let mut inspection = Inspection {
-            distortion: vec![0.0; elements],
-            weights: vec![0.0; elements],
-        };
-        for (place, &element) in self.order.iter().enumerate() {
-            let (block, e) = (&self.blocks[place / BLOCK], place % BLOCK);
-            inspection.distortion[element as usize] = self.elements.distortion(block, e);
-            inspection.weights[element as usize] =
-                (block.stiffness[0][e] / self.shape.constants.rest_stiffness) as f32;
+        let rest = self.shape.constants.rest_stiffness;
+        Inspection {
+            distortion: self.field(Field::Distortion),
+            weights: self.by_element(|block, e| (block.stiffness[0][e] / rest) as f32),
         }
-        inspection
     }
+}
+
+/// Fills the system matrix: element weights, then 1 for the constant terms, then the springs.
+fn fill(
+    matrix: &mut WeightedSum,
+    elements: usize,
+    terms: Option<&Terms>,
+    stiffness: impl Fn(usize) -> f64 + Sync + Send,
+) {
+    matrix.fill(|e| match (e < elements, terms) {
+        (true, _) => stiffness(e),
+        (false, Some(terms)) if e > elements => terms.spring_stiffness[e - elements - 1],
+        _ => 1.0,
+    });
 }

@@ -92,6 +92,16 @@ pub struct Deform {
     /// Vertices held where they start: a text file of indices, the first vertex being 0.
     #[arg(long, value_name = "P")]
     pub pins: Option<PathBuf>,
+    /// Points that vertices are pulled to: a text file of lines `index x y z`. A pinned vertex is moved
+    /// to its point.
+    #[arg(long, value_name = "T")]
+    pub targets: Option<PathBuf>,
+    /// Hold the vertices of --targets at their points instead of pulling at them.
+    #[arg(long, requires = "targets")]
+    pub hard: bool,
+    /// How hard targets pull, relative to how hard the body holds on to a vertex.
+    #[arg(long, value_name = "K", default_value_t = DeformationOptions::default().target_stiffness, value_parser = positive)]
+    pub target_stiffness: f64,
     /// Elastic energy.
     #[arg(long, default_value = "neo-hookean", value_parser = PossibleValuesParser::new(MATERIALS))]
     pub energy: String,
@@ -141,6 +151,7 @@ impl Deform {
         DeformationOptions {
             material,
             method: self.method,
+            target_stiffness: self.target_stiffness,
             tolerance: self.tolerance,
             max_iterations: self.iterations,
         }
@@ -211,6 +222,14 @@ fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(t) if t.is_finite() && t >= 0.0 => Ok(t),
         Ok(_) => Err("it must be finite and not negative".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(_) => Err("it must be finite and positive".into()),
         Err(error) => Err(error.to_string()),
     }
 }

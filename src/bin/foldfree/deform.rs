@@ -4,7 +4,7 @@ use crate::arguments::Deform;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::{self, DeformReport, Iteration};
-use crate::{Outcome, files, say};
+use crate::{Outcome, files, handles, say};
 use foldfree::deformation::Deformation;
 use foldfree::mesh::SolidMesh;
 use foldfree::mesh::io::{read_ele, read_node, write_node};
@@ -30,10 +30,17 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
         let what = format!("has {found} vertices, the rest shape {expected}");
         return Err(Failure::of_file(&arguments.init, what));
     }
-    let pins = match &arguments.pins {
-        Some(path) => read_pins(path, start.len())?,
+    let mut pins = match &arguments.pins {
+        Some(path) => handles::read_pins(path, start.len())?,
         None => Vec::new(),
     };
+    let targets = match &arguments.targets {
+        Some(path) => handles::read_targets(path, start.len())?,
+        None => Vec::new(),
+    };
+    if arguments.hard {
+        pins.extend(targets.iter().map(|t| t.vertex));
+    }
     let reference = match &arguments.reference {
         Some(path) => {
             let solution = read_positions(path)?;
@@ -45,7 +52,8 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
         }
         None => None,
     };
-    let mut deformation = Deformation::new(&rest, &start, &pins, &options).map_err(Failure::new)?;
+    let mut deformation = Deformation::with_targets(&rest, &start, &pins, &targets, &options)
+        .map_err(Failure::new)?;
     if !arguments.quiet {
         deformation.notes().iter().for_each(|note| say(note));
     }
@@ -107,6 +115,7 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             vertices: rest.positions.len(),
             tetrahedra: rest.simplices.len(),
             pins: pins.len(),
+            targets: targets.len(),
             notes: deformation.notes().to_vec(),
             setup_seconds: deformation.setup_seconds(),
             seconds: last.seconds,
@@ -155,35 +164,4 @@ fn read_solid(path: &Path) -> Result<SolidMesh, Failure> {
     let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
     let bytes = files::read_bytes(&ele)?;
     read_ele(&bytes, nodes).map_err(|error| Failure::of_file(&ele, error))
-}
-
-/// One 0-based vertex index a line; empty lines and what follows a # are passed over.
-fn read_pins(path: &Path, vertices: usize) -> Result<Vec<u32>, Failure> {
-    let bytes = files::read_bytes(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let mut pins = Vec::new();
-    for (number, line) in text.lines().enumerate() {
-        let line = line.split('#').next().unwrap_or("").trim();
-        if line.is_empty() {
-            continue;
-        }
-        match line.parse::<u32>() {
-            Ok(pin) if (pin as usize) < vertices => pins.push(pin),
-            Ok(pin) => {
-                let what = format!(
-                    "line {}: vertex {pin} of {vertices} (the first is 0)",
-                    number + 1
-                );
-                return Err(Failure::of_file(path, what));
-            }
-            Err(_) => {
-                let what = format!(
-                    "line {}: expected a vertex index, found {line:?}",
-                    number + 1
-                );
-                return Err(Failure::of_file(path, what));
-            }
-        }
-    }
-    Ok(pins)
 }

@@ -9,6 +9,7 @@ mod deform;
 mod failure;
 mod files;
 mod generate;
+mod handles;
 mod parameterize;
 mod progress;
 mod reference;

@@ -106,6 +106,7 @@ pub struct DeformReport {
     pub vertices: usize,
     pub tetrahedra: usize,
     pub pins: usize,
+    pub targets: usize,
     pub notes: Vec<String>,
     pub setup_seconds: f64,
     /// Seconds of all iterations.

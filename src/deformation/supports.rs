@@ -1,0 +1,107 @@
+//! What holds a body in place: pins and targets, for every component.
+
+use crate::mesh::{SimplicialMesh, counted};
+use crate::optim::BuildError;
+
+/// The held vertices and the components of a mesh.
+#[derive(Debug, Clone)]
+pub struct Supports {
+    /// Is the vertex held where it is: pinned, or part of no element?
+    pub is_held: Vec<bool>,
+    /// For each vertex the lowest of its component; itself if it is part of no element.
+    component: Vec<u32>,
+    /// Is the vertex part of an element?
+    used: Vec<bool>,
+    /// Is a vertex of this component pinned? (At the component's lowest vertex.)
+    pinned: Vec<bool>,
+}
+
+fn wrong<T>(option: &'static str, what: String) -> Result<T, BuildError> {
+    Err(BuildError::InvalidOption { option, what })
+}
+
+impl Supports {
+    /// Of a mesh with these pins.
+    ///
+    /// # Errors
+    /// `InvalidOption` for pins out of range, or that leave nothing free.
+    pub fn new<const K: usize>(
+        mesh: &SimplicialMesh<K>,
+        pins: &[u32],
+        notes: &mut Vec<String>,
+    ) -> Result<Self, BuildError> {
+        let n = mesh.positions.len();
+        if let Some(&bad) = pins.iter().find(|&&v| v as usize >= n) {
+            return wrong("pins", format!("vertex {bad} of {n} (the first is 0)"));
+        }
+        let mut is_held = vec![false; n];
+        pins.iter().for_each(|&v| is_held[v as usize] = true);
+        let mut root: Vec<u32> = (0..n as u32).collect();
+        let mut used = vec![false; n];
+        for simplex in &mesh.simplices {
+            for &v in simplex {
+                used[v as usize] = true;
+                let (a, b) = (find(&mut root, simplex[0]), find(&mut root, v));
+                root[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let component: Vec<u32> = (0..n as u32).map(|v| find(&mut root, v)).collect();
+        let mut pinned = vec![false; n];
+        for v in 0..n {
+            pinned[component[v] as usize] |= is_held[v];
+        }
+        let unused = used.iter().filter(|used| !**used).count();
+        if unused > 0 {
+            let vertices = counted(unused, "vertex");
+            notes.push(format!("{vertices} in no element: left where they start"));
+        }
+        for (held, used) in is_held.iter_mut().zip(&used) {
+            *held |= !used;
+        }
+        if is_held.iter().all(|&held| held) {
+            let what = "hold all vertices: there is nothing to solve for";
+            return wrong("pins", what.into());
+        }
+        Ok(Self {
+            is_held,
+            component,
+            used,
+            pinned,
+        })
+    }
+
+    /// The held vertices, in ascending order.
+    pub fn held(&self) -> Vec<u32> {
+        let vertices = 0..self.is_held.len() as u32;
+        vertices.filter(|&v| self.is_held[v as usize]).collect()
+    }
+
+    /// Checks that every component has a pin or one of these targets.
+    ///
+    /// # Errors
+    /// `InvalidOption` names the lowest vertex of one that has neither.
+    pub fn check(&self, targets: impl Iterator<Item = u32>) -> Result<(), BuildError> {
+        let mut fixed = self.pinned.clone();
+        targets.for_each(|v| fixed[self.component[v as usize] as usize] = true);
+        let floats = |&v: &usize| self.used[v] && !fixed[self.component[v] as usize];
+        match (0..self.used.len()).find(floats) {
+            Some(v) => wrong(
+                "pins",
+                format!(
+                    "the component of vertex {v} has no pin and no target: it could float away"
+                ),
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The representative of a vertex's component: its lowest vertex.
+fn find(root: &mut [u32], v: u32) -> u32 {
+    let mut v = v;
+    while root[v as usize] != v {
+        root[v as usize] = root[root[v as usize] as usize];
+        v = root[v as usize];
+    }
+    v
+}
