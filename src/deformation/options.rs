@@ -19,8 +19,37 @@ pub enum Material {
     SymmetricDirichlet,
 }
 
+impl Material {
+    /// The names on the command line and in JavaScript; the first is the default.
+    pub const NAMES: [&str; 3] = ["neo-hookean", "arap", "symmetric-dirichlet"];
+    /// Young's modulus of the paper's quasi-static examples.
+    pub const YOUNG: f64 = 1e7;
+    /// Poisson's ratio of the paper's quasi-static examples.
+    pub const POISSON: f64 = 0.45;
+
+    /// The material of this name, with these moduli if it has any.
+    pub fn named(name: &str, young: f64, poisson: f64) -> Option<Self> {
+        Some(match name {
+            "neo-hookean" => Self::NeoHookean { young, poisson },
+            "arap" => Self::Arap,
+            "symmetric-dirichlet" => Self::SymmetricDirichlet,
+            _ => return None,
+        })
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self::NeoHookean {
+            young: Self::YOUNG,
+            poisson: Self::POISSON,
+        }
+    }
+}
+
 /// How the energy is minimised: the four curves of the paper's figure 4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum DeformationMethod {
     /// Rotation-aware, with dynamic reweighting.
@@ -53,10 +82,7 @@ pub struct DeformationOptions {
 impl Default for DeformationOptions {
     fn default() -> Self {
         Self {
-            material: Material::NeoHookean {
-                young: 1e7,
-                poisson: 0.45,
-            },
+            material: Material::default(),
             method: DeformationMethod::Wrapd,
             target_stiffness: 10.0,
             tolerance: 1e-11,

@@ -15,6 +15,7 @@ pub struct Spring {
 
 /// A per-element field of a deformation. All are infinite where an element is inverted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Field {
     /// The symmetric Dirichlet density relative to that of an isometry (1: undeformed).

@@ -146,7 +146,7 @@ pub fn shapes() -> Fallible<JsValue> {
 }
 
 /// Interleaved coordinates as points.
-fn positions3(values: &[f64]) -> Fallible<Vec<DVec3>> {
+pub(super) fn positions3(values: &[f64]) -> Fallible<Vec<DVec3>> {
     let (points, rest) = values.as_chunks::<3>();
     if !rest.is_empty() {
         return Err(invalid_argument(

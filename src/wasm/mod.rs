@@ -6,14 +6,18 @@
 #![allow(unsafe_code)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod deformation;
 mod error;
 mod mesh;
 mod options;
 mod parameterization;
 mod report;
+mod solid;
 
+pub use deformation::WasmDeformation;
 pub use mesh::{WasmMesh, shapes};
 pub use parameterization::{WasmParameterization, check_corners, check_map};
+pub use solid::WasmSolid;
 #[cfg(feature = "threads")]
 pub use wasm_bindgen_rayon::init_thread_pool;
 
@@ -53,4 +57,8 @@ pub fn thread_count() -> usize {
     return rayon::current_num_threads();
     #[cfg(not(feature = "parallel"))]
     return 1;
+}
+
+fn to_js(value: &impl serde::Serialize) -> Result<JsValue, JsValue> {
+    serde_wasm_bindgen::to_value(value).map_err(JsValue::from)
 }

@@ -1,20 +1,80 @@
 //! Options from a JavaScript object. Unknown keys and wrong kinds of value are errors that name the key.
 
 use super::error::{Fallible, invalid_option};
+use crate::deformation::{DeformationMethod, DeformationOptions, Material};
 use crate::parameterization::ParameterizationOptions;
 use js_sys::{Object, Reflect};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use tsify::Tsify;
 use wasm_bindgen::prelude::*;
+
+/// Options of a deformation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Tsify)]
+#[serde(rename_all = "camelCase", default)]
+pub struct DeformationSettings {
+    /// The elastic energy.
+    #[tsify(type = "Material")]
+    pub energy: String,
+    /// Young's modulus, > 0, in any unit of pressure; of the materials that have one.
+    pub young: f64,
+    /// Poisson's ratio, below 0.5.
+    pub poisson: f64,
+    /// The method.
+    pub method: DeformationMethod,
+    /// How hard targets pull at free vertices, relative to how hard the body holds on to them.
+    pub target_stiffness: f64,
+    /// Stop when |ΔE|/(|E| + 1) is below this.
+    pub tolerance: f64,
+    /// Stop after this many iterations.
+    pub max_iterations: usize,
+}
+
+impl Default for DeformationSettings {
+    fn default() -> Self {
+        let options = DeformationOptions::default();
+        Self {
+            energy: Material::NAMES[0].into(),
+            young: Material::YOUNG,
+            poisson: Material::POISSON,
+            method: options.method,
+            target_stiffness: options.target_stiffness,
+            tolerance: options.tolerance,
+            max_iterations: options.max_iterations,
+        }
+    }
+}
 
 /// `undefined` and `null` stand for the defaults.
 pub(super) fn parameterization_options(value: &JsValue) -> Fallible<ParameterizationOptions> {
+    options(value)
+}
+
+/// `undefined` and `null` stand for the defaults.
+pub(super) fn deformation_options(value: &JsValue) -> Fallible<DeformationOptions> {
+    let settings: DeformationSettings = options(value)?;
+    let Some(material) = Material::named(&settings.energy, settings.young, settings.poisson) else {
+        let names = Material::NAMES.join(", ");
+        return Err(invalid_option("energy", &format!("there are {names}")));
+    };
+    Ok(DeformationOptions {
+        material,
+        method: settings.method,
+        target_stiffness: settings.target_stiffness,
+        tolerance: settings.tolerance,
+        max_iterations: settings.max_iterations,
+    })
+}
+
+fn options<T: Default + Serialize + DeserializeOwned>(value: &JsValue) -> Fallible<T> {
     if value.is_undefined() || value.is_null() {
-        return Ok(ParameterizationOptions::default());
+        return Ok(T::default());
     }
     let Some(object) = value.dyn_ref::<Object>() else {
         return Err(invalid_option("options", "an object is needed"));
     };
     // serde-wasm-bindgen reads only the fields a struct has, so the keys are compared here.
-    let known = Object::keys(&default_options()?.into());
+    let defaults = serde_wasm_bindgen::to_value(&T::default()).map_err(JsValue::from)?;
+    let known = Object::keys(&defaults.into());
     let given = Object::new();
     for key in Object::keys(object) {
         let value = Reflect::get(object, &key)?;
@@ -29,18 +89,36 @@ pub(super) fn parameterization_options(value: &JsValue) -> Fallible<Parameteriza
         }
         let alone = Object::new();
         Reflect::set(&alone, &key, &value)?;
-        read(alone.into()).map_err(|what| invalid_option(&name, &what))?;
+        read::<T>(alone.into()).map_err(|what| invalid_option(&name, &what))?;
         Reflect::set(&given, &key, &value)?;
     }
     read(given.into()).map_err(|what| invalid_option("options", &what))
 }
 
-fn read(value: JsValue) -> Result<ParameterizationOptions, String> {
+fn read<T: DeserializeOwned>(value: JsValue) -> Result<T, String> {
     serde_wasm_bindgen::from_value(value).map_err(|error| error.to_string())
 }
 
-/// The default options as a JavaScript object.
+/// The default options of a parameterization as a JavaScript object.
 #[wasm_bindgen(js_name = defaultOptions, unchecked_return_type = "ParameterizationOptions")]
 pub fn default_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&ParameterizationOptions::default()).map_err(JsValue::from)
+}
+
+/// The default options of a deformation.
+#[wasm_bindgen(js_name = defaultDeformationOptions, unchecked_return_type = "DeformationSettings")]
+pub fn default_deformation_options() -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(&DeformationSettings::default()).map_err(JsValue::from)
+}
+
+#[wasm_bindgen(typescript_custom_section)]
+const MATERIAL_TYPE: &str = "
+/** An elastic energy; `materials()` lists them. */
+export type Material = 'neo-hookean' | 'arap' | 'symmetric-dirichlet';
+";
+
+/// The names of the materials.
+#[wasm_bindgen(unchecked_return_type = "Material[]")]
+pub fn materials() -> Vec<String> {
+    Material::NAMES.map(String::from).into()
 }

@@ -4,6 +4,7 @@ use super::error::{Fallible, invalid_argument, thrown};
 use super::mesh::{WasmMesh, flat2, flat3};
 use super::options::parameterization_options;
 use super::report::StepReport;
+use super::to_js;
 use crate::certificate::{Certificate, CornerMap};
 use crate::mesh::io::{self, CornerTexture};
 use crate::mesh::{SurfaceMesh, prepare};
@@ -189,8 +190,4 @@ pub fn check_corners(mesh: &WasmMesh, corners: &[f64]) -> Fallible<JsValue> {
         map.mesh = prepared.mesh;
     }
     to_js(&Certificate::try_of_map(&map.mesh, &map.uv).map_err(thrown)?)
-}
-
-fn to_js(value: &impl serde::Serialize) -> Fallible<JsValue> {
-    serde_wasm_bindgen::to_value(value).map_err(JsValue::from)
 }

@@ -103,13 +103,13 @@ pub struct Deform {
     #[arg(long, value_name = "K", default_value_t = DeformationOptions::default().target_stiffness, value_parser = positive)]
     pub target_stiffness: f64,
     /// Elastic energy.
-    #[arg(long, default_value = "neo-hookean", value_parser = PossibleValuesParser::new(MATERIALS))]
+    #[arg(long, default_value = Material::NAMES[0], value_parser = PossibleValuesParser::new(Material::NAMES))]
     pub energy: String,
     /// Young's modulus (neo-hookean).
-    #[arg(long, value_name = "E", default_value_t = 1e7)]
+    #[arg(long, value_name = "E", default_value_t = Material::YOUNG)]
     pub young: f64,
     /// Poisson's ratio (neo-hookean).
-    #[arg(long, value_name = "N", default_value_t = 0.45)]
+    #[arg(long, value_name = "N", default_value_t = Material::POISSON)]
     pub poisson: f64,
     /// How.
     #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd"]))]
@@ -140,14 +140,8 @@ pub struct Deform {
 impl Deform {
     /// The library's options.
     pub fn options(&self) -> DeformationOptions {
-        let material = match self.energy.as_str() {
-            "arap" => Material::Arap,
-            "symmetric-dirichlet" => Material::SymmetricDirichlet,
-            _ => Material::NeoHookean {
-                young: self.young,
-                poisson: self.poisson,
-            },
-        };
+        // the parser knows no other names
+        let material = Material::named(&self.energy, self.young, self.poisson).unwrap_or_default();
         DeformationOptions {
             material,
             method: self.method,
@@ -195,7 +189,6 @@ pub struct Generate {
 const METHODS: &[&str] = &[
     "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
 ];
-const MATERIALS: [&str; 3] = ["neo-hookean", "arap", "symmetric-dirichlet"];
 const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
 const STARTS: &[&str] = &[
     "automatic",
