@@ -41,6 +41,8 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
         format!("1 {noun}")
     } else if let Some(stem) = noun.strip_suffix("ex") {
         format!("{count} {stem}ices")
+    } else if let Some(stem) = noun.strip_suffix("hedron") {
+        format!("{count} {stem}hedra")
     } else {
         format!("{count} {noun}s")
     }
