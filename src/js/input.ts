@@ -14,7 +14,7 @@ export function isArrays(data: MeshData): data is MeshArrays {
 
 /** The format, which a file's bytes or text need. */
 export function needFormat(format: MeshFormat | undefined): MeshFormat {
-  if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "obj" or "off" is needed');
+  if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "obj", "off", "ply", "stl", "mesh", "msh" or "vtk" is needed');
   return format;
 }
 

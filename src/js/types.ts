@@ -10,7 +10,7 @@ export type {
 export type ParameterizeOptions = ParameterizationOptions;
 
 /** File formats that can be read. */
-export type MeshFormat = 'obj' | 'off';
+export type MeshFormat = 'obj' | 'off' | 'ply' | 'stl' | 'mesh' | 'msh' | 'vtk';
 
 /** A triangle mesh as arrays. */
 export interface MeshArrays {

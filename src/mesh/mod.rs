@@ -5,6 +5,7 @@
 //! generate ─────────▲
 //! ```
 
+mod boundary;
 pub mod cut;
 mod error;
 pub mod generate;
@@ -12,6 +13,7 @@ pub mod io;
 mod prepare;
 pub mod topology;
 
+pub use boundary::{Boundary, FACES};
 pub use cut::{Cut, cut_to_disk};
 pub use error::MeshError;
 pub use generate::{Shape, generate};
