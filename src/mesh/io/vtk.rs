@@ -222,8 +222,10 @@ fn read_cells(values: &mut Values, contents: &Contents) -> Result<Cells, ParseEr
         let length = values
             .count(Scalar::I32, "the length of a list")
             .map_err(within)?;
-        if length > (numbers - cells.indices.len()) as u64 {
-            let what = format!("a list of {length} where {numbers} indices are claimed in all");
+        // The lengths of the lists count as well.
+        let left = numbers.saturating_sub(cells.indices.len() + number + 1);
+        if length > left as u64 {
+            let what = format!("a list of {length} where {left} more indices are claimed");
             return Err(within(values.error(ParseErrorKind::Syntax, what)));
         }
         for _ in 0..length {
