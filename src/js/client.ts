@@ -1,8 +1,8 @@
 // The client's end of one worker: calls and their answers, its death and its restart.
 import { FATAL, FoldfreeError, fromPlain } from './error.js';
 import { startWorker, threadsAvailable, type WorkerPort } from './platform.js';
-import type { CallName, Calls, FromWorker, ToWorker } from './protocol.js';
-import type { ShapeInfo, Step, StepReport } from './types.js';
+import type { CallName, Calls, FromWorker, Loaded, ToWorker } from './protocol.js';
+import type { Frame, Step, StepReport } from './types.js';
 
 /** Where the parts are, and how many threads to use. */
 export interface LoadOptions {
@@ -27,15 +27,13 @@ export interface LoadOptions {
   signal?: AbortSignal;
 }
 
-export type Loaded = Calls['init'][1];
-
 interface Pending {
   resolve(value: unknown): void;
   reject(error: unknown): void;
 }
 
 /** What a run does with a frame. The next is sent when this has returned, or its promise is done. */
-export type FrameListener = (frame: Step, reports: StepReport[]) => void | Promise<void>;
+export type FrameListener<F extends Frame = Step> = (frame: F, reports: StepReport[]) => void | Promise<void>;
 
 const DEFAULT_THREAD_TIMEOUT = 5000;
 const MOST_THREADS = 8;
@@ -52,7 +50,7 @@ export class Client {
   #nextId = 1;
   #channel: BroadcastChannel | undefined;
   readonly #pending = new Map<number, Pending>();
-  readonly #runs = new Map<number, FrameListener>();
+  readonly #runs = new Map<number, FrameListener<Frame>>();
   #onStarting: (() => void) | undefined;
 
   constructor(options: LoadOptions) {
@@ -81,7 +79,7 @@ export class Client {
   }
 
   /** A run: `listener` gets its frames, one at a time. */
-  async run(args: Calls['run'][0], generation: number, listener: FrameListener | undefined): Promise<Step> {
+  async run(args: Calls['run'][0], generation: number, listener: FrameListener<Frame> | undefined): Promise<Frame> {
     await this.start();
     this.#mustBe(generation);
     if (listener) this.#runs.set(args.run, listener);

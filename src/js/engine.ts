@@ -1,24 +1,18 @@
 // The synchronous API over one instance of the wasm module. The worker and `foldfree/core` share it.
 import type * as Bindings from './single/foldfree.js';
-import { FoldfreeError, toFoldfreeError } from './error.js';
-import { cornerImages, fileBytes, isArrays, needFormat } from './input.js';
+import { FoldfreeError } from './error.js';
+import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needSolidFormat } from './input.js';
+import { CoreDeformation, CoreSolid } from './solid-engine.js';
+import { guard } from './guard.js';
 import {
   dispose,
-  type Certificate, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
-  type ParameterizeOptions, type Result, type ShapeInfo, type SolverInfo, type Step, type StepReport, type Texture,
+  type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
+  type ParameterizeOptions, type Result, type ShapeInfo, type SolidData, type SolidFormat, type SolverInfo,
+  type Step, type StepReport, type Texture,
 } from './types.js';
 
 /** The exports of one of the two wasm builds. */
 export type WasmBindings = typeof Bindings;
-
-/** Calls into wasm; what it throws comes out as a `FoldfreeError`. */
-function guard<T>(call: () => T): T {
-  try {
-    return call();
-  } catch (thrown) {
-    throw toFoldfreeError(thrown);
-  }
-}
 
 /** A mesh in wasm memory, with copies of its arrays. */
 export class CoreMesh implements MeshInfo {
@@ -151,6 +145,8 @@ export class Core {
   readonly threads: number;
   /** The sample shapes `generate` makes. */
   readonly shapes: ShapeInfo[];
+  /** The sample solids `generateSolid` makes. */
+  readonly solidShapes: ShapeInfo[];
   readonly #bindings: WasmBindings;
 
   /** @internal */
@@ -159,6 +155,7 @@ export class Core {
     this.version = bindings.version();
     this.threads = bindings.threadCount();
     this.shapes = bindings.shapes();
+    this.solidShapes = bindings.solidShapes();
   }
 
   /** Reads a mesh file (bytes or text; a format is needed), or takes arrays. */
@@ -195,6 +192,36 @@ export class Core {
   /** Checks a map with seams: the image of every corner of every triangle, m × 3 × 2. */
   checkCorners(mesh: CoreMesh, corners: Float64Array): Certificate {
     return guard(() => this.#bindings.checkCorners(mesh.handle, corners));
+  }
+
+  /** Reads a solid's file (bytes or text; a format is needed; `node` takes the .ele file, too), or takes arrays. */
+  solid(data: SolidData, format?: SolidFormat, elements?: Uint8Array | ArrayBuffer | string): CoreSolid {
+    const { WasmSolid } = this.#bindings;
+    if (isSolidArrays(data)) return guard(() => new CoreSolid(WasmSolid.fromArrays(data.positions, data.tetrahedra)));
+    const known = needSolidFormat(format, elements);
+    return guard(() => new CoreSolid(
+      elements === undefined
+        ? WasmSolid.fromBytes(fileBytes(data), known)
+        : WasmSolid.fromNodeAndEle(fileBytes(data), fileBytes(elements)),
+    ));
+  }
+
+  /** Generates a sample solid of about so many tetrahedra; the names are those of `solidShapes`. */
+  generateSolid(name: string, tetrahedra: number): CoreSolid {
+    if (!(tetrahedra >= 1 && tetrahedra <= 0xffff_ffff)) {
+      throw new FoldfreeError('invalid-argument', `tetrahedra: ${tetrahedra} is not a number of tetrahedra`);
+    }
+    return guard(() => new CoreSolid(this.#bindings.WasmSolid.generate(name, tetrahedra)));
+  }
+
+  /** Checks rest shape, start and handles, and builds the solver. */
+  deform(solid: CoreSolid, options: DeformOptions & { frames?: FramePrecision } = {}): CoreDeformation {
+    return CoreDeformation.make(this.#bindings, solid, options);
+  }
+
+  /** The options of a deformation with the values they have when left out. */
+  defaultDeformationOptions(): DeformationSettings {
+    return guard(() => this.#bindings.defaultDeformationOptions());
   }
 
   /** All options with the values they have when left out. */

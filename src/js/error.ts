@@ -5,9 +5,9 @@ export class FoldfreeError extends Error {
   readonly code: string;
   /** Where and what exactly: `vertex`, `face`, `vertices`, `option`, …, whatever the kind of error has. */
   readonly details: Readonly<Record<string, unknown>>;
-  /** 1-based line of the file, of a `parse` error. */
+  /** 1-based line of the file, of a `parse` error; 0 in the binary part of a file. */
   readonly line?: number;
-  /** 1-based column of the file, in bytes, of a `parse` error. */
+  /** 1-based column of the file, in bytes, of a `parse` error; where `line` is 0, the byte of the file. */
   readonly column?: number;
 
   constructor(code: string, message: string, details: Record<string, unknown> = {}, options?: ErrorOptions) {

@@ -1,6 +1,8 @@
 // What people hand in as a mesh.
 import { FoldfreeError } from './error.js';
-import type { MeshArrays, MeshData, MeshFormat, MeshInfo } from './types.js';
+import type {
+  Handles, MeshArrays, MeshData, MeshFormat, MeshInfo, SolidArrays, SolidData, SolidFormat, Targets,
+} from './types.js';
 
 /** Arrays, rather than a file's bytes or text? Anything else is an error. */
 export function isArrays(data: MeshData): data is MeshArrays {
@@ -12,9 +14,51 @@ export function isArrays(data: MeshData): data is MeshArrays {
   );
 }
 
+/** The same of a solid. */
+export function isSolidArrays(data: SolidData): data is SolidArrays {
+  if (typeof data === 'string' || data instanceof Uint8Array || data instanceof ArrayBuffer) return false;
+  if (data?.positions instanceof Float64Array && data.tetrahedra instanceof Uint32Array) return true;
+  throw new FoldfreeError(
+    'invalid-argument',
+    'solid: bytes, text, or { positions: Float64Array, tetrahedra: Uint32Array } is needed',
+  );
+}
+
+/** The format of a solid's file, and the bytes that go with it. */
+export function needSolidFormat(format: SolidFormat | undefined, elements: unknown): SolidFormat {
+  if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "mesh", "msh", "vtk" or "node" is needed');
+  if ((format === 'node') !== (elements !== undefined)) {
+    throw new FoldfreeError('invalid-argument', 'elements: the .ele file goes with format "node", and with no other');
+  }
+  return format;
+}
+
+/** Checks the kinds of handles, and fills in what is left out. */
+export function needHandles({ pins = [], start, targets }: Handles): { pins: Uint32Array; start?: Float64Array; targets: Targets } {
+  const wrong = (what: string) => new FoldfreeError('invalid-argument', what);
+  const whole = (v: unknown) => Number.isInteger(v) && (v as number) >= 0 && (v as number) < 2 ** 32;
+  if (!(pins instanceof Uint32Array) && !(Array.isArray(pins) && pins.every(whole))) {
+    throw wrong('pins: a Uint32Array, or an array of vertex indices, is needed');
+  }
+  if (start !== undefined && !(start instanceof Float64Array)) throw wrong('start: a Float64Array is needed');
+  return {
+    pins: Uint32Array.from(pins),
+    ...(start && { start }),
+    targets: needTargets(targets ?? { vertices: new Uint32Array(), positions: new Float64Array() }),
+  };
+}
+
+/** Checks the kinds of targets. */
+export function needTargets(targets: Targets): Targets {
+  if (targets?.vertices instanceof Uint32Array && targets.positions instanceof Float64Array) {
+    return { vertices: targets.vertices, positions: targets.positions };
+  }
+  throw new FoldfreeError('invalid-argument', 'targets: { vertices: Uint32Array, positions: Float64Array } is needed');
+}
+
 /** The format, which a file's bytes or text need. */
 export function needFormat(format: MeshFormat | undefined): MeshFormat {
-  if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "obj" or "off" is needed');
+  if (format === undefined) throw new FoldfreeError('invalid-argument', 'format: "obj", "off", "ply", "stl", "mesh", "msh" or "vtk" is needed');
   return format;
 }
 

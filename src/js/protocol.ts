@@ -1,12 +1,21 @@
 // What the client and the worker say to each other.
 import type { PlainError } from './error.js';
 import type {
-  Certificate, FramePrecision, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolverInfo, Step, StepReport,
+  Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
+  SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
 } from './types.js';
+
+/** What is known of the library once it is loaded. */
+export interface Loaded {
+  threads: number;
+  version: string;
+  shapes: ShapeInfo[];
+  solidShapes: ShapeInfo[];
+}
 
 /** The calls a worker answers: arguments and result. */
 export interface Calls {
-  init: [{ threads: number; wasmUrl?: string | undefined; instance: number }, { threads: number; version: string; shapes: ShapeInfo[] }];
+  init: [{ threads: number; wasmUrl?: string | undefined; instance: number }, Loaded];
   /** Keeps a file's mesh under `mesh` and sends its arrays. */
   read: [{ mesh: number; bytes: Uint8Array; format: MeshFormat }, MeshInfo];
   /** Keeps a mesh given as arrays under `mesh`. */
@@ -14,8 +23,18 @@ export interface Calls {
   generate: [{ mesh: number; name: string; triangles: number }, MeshInfo];
   freeMesh: [{ mesh: number }, undefined];
   parameterize: [{ mesh: number; solver: number; options: ParameterizeOptions; frames: FramePrecision }, SolverInfo];
-  step: [{ solver: number }, Step];
-  run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, Step];
+  /** Keeps a solid's file under `mesh` and sends its arrays. */
+  readSolid: [{ mesh: number; bytes: Uint8Array; format: SolidFormat; elements?: Uint8Array }, SolidInfo];
+  /** Keeps a solid given as arrays under `mesh`. */
+  uploadSolid: [{ mesh: number; arrays: SolidArrays }, SolidInfo];
+  generateSolid: [{ mesh: number; name: string; tetrahedra: number }, SolidInfo];
+  writeSolid: [{ mesh: number; format: MeshFormat; positions: Float64Array | undefined }, Uint8Array];
+  deform: [{ mesh: number; solver: number; options: DeformOptions; frames: FramePrecision }, DeformInfo];
+  setTargets: [{ solver: number; targets: Targets }, undefined];
+  setField: [{ solver: number; field: Field }, undefined];
+  deformed: [{ solver: number }, DeformResult];
+  step: [{ solver: number }, Frame];
+  run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, Frame];
   weights: [{ solver: number }, Float32Array];
   result: [{ solver: number }, Result];
   exportObj: [{ solver: number }, Uint8Array];
@@ -42,4 +61,4 @@ export type FromWorker =
   | { progress: { loaded: number; total: number } }
   /** The wasm is there, the pool of threads starts: from here on the time-out counts. */
   | { starting: true }
-  | { run: number; frame: Step; reports: StepReport[] };
+  | { run: number; frame: Frame; reports: StepReport[] };

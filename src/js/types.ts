@@ -1,16 +1,18 @@
 // The types that the synchronous core and the worker client share.
-import type { Certificate, ParameterizationOptions, ShapeInfo, Start, StepReport } from './single/foldfree.js';
+import type {
+  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, Start, StepReport,
+} from './single/foldfree.js';
 
-export type { Certificate, ParameterizationOptions, ShapeInfo, Start, StepReport };
+export type { Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, Start, StepReport };
 export type {
-  BoundaryCrossing, Criterion, CutPolicy, EnergyKind, Method, Phase, PhaseKind,
+  BoundaryCrossing, Criterion, CutPolicy, DeformationMethod, EnergyKind, Material, Method, Phase, PhaseKind,
 } from './single/foldfree.js';
 
 /** Options of `parameterize`; what is left out has the paper's value. */
 export type ParameterizeOptions = ParameterizationOptions;
 
 /** File formats that can be read. */
-export type MeshFormat = 'obj' | 'off';
+export type MeshFormat = 'obj' | 'off' | 'ply' | 'stl' | 'mesh' | 'msh' | 'vtk';
 
 /** A triangle mesh as arrays. */
 export interface MeshArrays {
@@ -42,10 +44,14 @@ export type MeshData = Uint8Array | ArrayBuffer | string | MeshArrays;
 /** Precision of the positions that come with a step. */
 export type FramePrecision = 'f32' | 'f64';
 
-/** A step's report with the map it led to. */
-export interface Step extends StepReport {
-  /** The map, n × 2, interleaved, in the units of the input. */
+/** A step's report with the positions it led to. */
+export interface Frame extends StepReport {
+  /** The map, n × 2, or the deformed solid, n × 3; interleaved, in the units of the input. */
   positions: Float64Array | Float32Array;
+}
+
+/** A step of a parameterization. */
+export interface Step extends Frame {
   /** Symmetric Dirichlet density a triangle: 1 where isometric, infinite where inverted. */
   distortion: Float32Array;
 }
@@ -76,6 +82,74 @@ export interface Result {
   certificate: Certificate;
   /** For every vertex of the flattened disk its index in the input mesh. */
   inputVertices: Uint32Array;
+}
+
+/** File formats that hold tetrahedra. `node` takes the .ele file, too. */
+export type SolidFormat = 'mesh' | 'msh' | 'vtk' | 'node';
+
+/** A tetrahedral mesh as arrays. */
+export interface SolidArrays {
+  /** n × 3, interleaved. */
+  positions: Float64Array;
+  /** m × 4, 0-based. */
+  tetrahedra: Uint32Array;
+}
+
+/** Everything JavaScript keeps of a solid. */
+export interface SolidInfo extends SolidArrays {
+  /** The triangles of its boundary, k × 3, counter-clockwise seen from outside. */
+  surface: Uint32Array;
+  /** What reading mended or noticed, in words. */
+  notes: string[];
+}
+
+/** What a solid can be made of: a file's bytes or text, or arrays. */
+export type SolidData = Uint8Array | ArrayBuffer | string | SolidArrays;
+
+/** Where vertices are wanted: pinned ones are moved there, free ones pulled. */
+export interface Targets {
+  /** The vertices, k, each once. */
+  vertices: Uint32Array;
+  /** A point for each, k × 3, interleaved. */
+  positions: Float64Array;
+}
+
+/** Handles and start of a deformation. */
+export interface Handles {
+  /** Vertices held where they start. */
+  pins?: Uint32Array | readonly number[];
+  /** Where the solid starts, n × 3, perhaps inverted; left out: at rest. */
+  start?: Float64Array;
+  /** Targets from the beginning. */
+  targets?: Targets;
+}
+
+/** Options of `deform`; what is left out has the paper's value. */
+export interface DeformOptions extends Partial<DeformationSettings>, Handles {
+  /** The field that comes with each step (default `'distortion'`). */
+  field?: Field;
+}
+
+/** A step of a deformation. */
+export interface DeformStep extends Frame {
+  /** The field that was asked for, one value a tetrahedron; infinite where inverted. */
+  field: Float32Array;
+}
+
+/** What is known of a deformation before its first step. */
+export interface DeformInfo {
+  /** Iteration 0. */
+  start: DeformStep;
+  /** What was mended or chosen, in words. */
+  notes: string[];
+  /** Seconds that the checks and the factorisation took. */
+  setupSeconds: number;
+}
+
+/** A deformed solid. */
+export interface DeformResult {
+  /** n × 3, interleaved. */
+  positions: Float64Array;
 }
 
 /** `Symbol.dispose`, also where the engine does not have it yet (`using` needs it). */

@@ -1,8 +1,9 @@
 // The worker: holds the wasm instance, answers the client's calls, and sends frames of runs.
-import { Core, type CoreMesh, type CoreSolver, type WasmBindings } from './engine.js';
+import { Core, CoreMesh, CoreSolver, type WasmBindings } from './engine.js';
 import { FoldfreeError, toPlain } from './error.js';
 import type { CallName, Calls, FromWorker, ToWorker } from './protocol.js';
-import type { MeshInfo, SolverInfo, Step, StepReport } from './types.js';
+import { CoreDeformation, type CoreSolid } from './solid-engine.js';
+import type { DeformInfo, Frame, MeshInfo, SolidInfo, SolverInfo, StepReport } from './types.js';
 
 interface Port {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
@@ -76,10 +77,15 @@ function transferables(value: unknown): Transferable[] {
   return found;
 }
 
+/** Calls whose answers stay here, too. */
+const KEPT: readonly CallName[] = [
+  'read', 'generate', 'parameterize', 'readSolid', 'uploadSolid', 'generateSolid', 'deform',
+];
+
 function serve(port: Port): void {
   let core: Core | undefined;
-  const meshes = new Map<number, CoreMesh>();
-  const solvers = new Map<number, CoreSolver>();
+  const meshes = new Map<number, CoreMesh | CoreSolid>();
+  const solvers = new Map<number, CoreSolver | CoreDeformation>();
   const runs = new Map<number, Run>();
 
   const theCore = (): Core => {
@@ -90,6 +96,31 @@ function serve(port: Port): void {
     const value = map.get(id);
     if (value === undefined) throw new FoldfreeError('freed', `this ${what} was freed`);
     return value;
+  };
+  const surface = (id: number): CoreMesh => {
+    const mesh = found(meshes, id, 'mesh');
+    if (mesh instanceof CoreMesh) return mesh;
+    throw new FoldfreeError('internal', 'this is no surface');
+  };
+  const solid = (id: number): CoreSolid => {
+    const mesh = found(meshes, id, 'solid');
+    if (mesh instanceof CoreMesh) throw new FoldfreeError('internal', 'this is no solid');
+    return mesh;
+  };
+  const map = (id: number): CoreSolver => {
+    const solver = found(solvers, id, 'solver');
+    if (solver instanceof CoreSolver) return solver;
+    throw new FoldfreeError('internal', 'this is no map');
+  };
+  const deformation = (id: number): CoreDeformation => {
+    const solver = found(solvers, id, 'solver');
+    if (solver instanceof CoreDeformation) return solver;
+    throw new FoldfreeError('internal', 'this is no deformation');
+  };
+  const keepSolid = (id: number, made: CoreSolid): SolidInfo => {
+    meshes.set(id, made);
+    const { positions, tetrahedra, surface, notes } = made;
+    return { positions, tetrahedra, surface, notes };
   };
   const keep = (id: number, mesh: CoreMesh): MeshInfo => {
     meshes.set(id, mesh);
@@ -116,7 +147,7 @@ function serve(port: Port): void {
         await bindings.default({ module_or_path: module });
         core = new Core(bindings);
       }
-      return { threads: core.threads, version: core.version, shapes: core.shapes };
+      return { threads: core.threads, version: core.version, shapes: core.shapes, solidShapes: core.solidShapes };
     },
     read: ({ mesh, bytes, format }) => keep(mesh, theCore().mesh(bytes, format)),
     upload: ({ mesh, arrays }) => void meshes.set(mesh, theCore().mesh(arrays)),
@@ -127,11 +158,24 @@ function serve(port: Port): void {
       return undefined;
     },
     parameterize({ mesh, solver, options, frames }): SolverInfo {
-      const made = theCore().parameterize(found(meshes, mesh, 'mesh'), { ...options, frames });
+      const made = theCore().parameterize(surface(mesh), { ...options, frames });
       solvers.set(solver, made);
       const { start, inputVertices, seamEdges, startKind, notes, setupSeconds } = made;
       return { start, mesh: made.mesh, inputVertices: inputVertices.slice(), seamEdges, startKind, notes, setupSeconds };
     },
+    readSolid: ({ mesh, bytes, format, elements }) => keepSolid(mesh, theCore().solid(bytes, format, elements)),
+    uploadSolid: ({ mesh, arrays }) => keepSolid(mesh, theCore().solid(arrays)),
+    generateSolid: ({ mesh, name, tetrahedra }) => keepSolid(mesh, theCore().generateSolid(name, tetrahedra)),
+    writeSolid: ({ mesh, format, positions }) => solid(mesh).write(format, positions),
+    deform({ mesh, solver, options, frames }): DeformInfo {
+      const made = theCore().deform(solid(mesh), { ...options, frames });
+      solvers.set(solver, made);
+      const { start, notes, setupSeconds } = made;
+      return { start, notes, setupSeconds };
+    },
+    setTargets: ({ solver, targets }) => void deformation(solver).setTargets(targets),
+    setField: ({ solver, field }) => void deformation(solver).setField(field),
+    deformed: ({ solver }) => deformation(solver).result(),
     step: ({ solver }) => found(solvers, solver, 'solver').step(),
     async run({ solver: id, run: runId, maxIterations, minInterval }) {
       const solver = found(solvers, id, 'solver');
@@ -155,7 +199,7 @@ function serve(port: Port): void {
           if (run.cancelled) break;
           if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
         }
-        const last: Step = solver.frame();
+        const last: Frame = solver.frame();
         if (reports.length) {
           if (!run.acknowledged) await new Promise<void>((resolve) => (run.taken = resolve));
           port.postMessage({ run: runId, frame: last, reports });
@@ -166,15 +210,15 @@ function serve(port: Port): void {
       }
     },
     weights: ({ solver }) => found(solvers, solver, 'solver').weights(),
-    result: ({ solver }) => found(solvers, solver, 'solver').result(),
-    exportObj: ({ solver }) => found(solvers, solver, 'solver').exportObj(),
+    result: ({ solver }) => map(solver).result(),
+    exportObj: ({ solver }) => map(solver).exportObj(),
     freeSolver: ({ solver }) => {
       solvers.get(solver)?.free();
       solvers.delete(solver);
       return undefined;
     },
-    check: ({ mesh, uv }) => theCore().check(found(meshes, mesh, 'mesh'), uv),
-    checkCorners: ({ mesh, corners }) => theCore().checkCorners(found(meshes, mesh, 'mesh'), corners),
+    check: ({ mesh, uv }) => theCore().check(surface(mesh), uv),
+    checkCorners: ({ mesh, corners }) => theCore().checkCorners(surface(mesh), corners),
     memory: () => theCore().memoryBytes,
   };
 
@@ -194,7 +238,7 @@ function serve(port: Port): void {
         const handler = handlers[call] as (args: unknown) => unknown;
         const value = await handler(args);
         // A mesh's arrays stay here too: they are copied, once.
-        const keepHere = call === 'read' || call === 'generate' || call === 'parameterize';
+        const keepHere = KEPT.includes(call);
         port.postMessage({ id, value }, keepHere ? [] : transferables(value));
       } catch (thrown) {
         port.postMessage({ id, error: toPlain(thrown) });

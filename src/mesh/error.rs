@@ -36,6 +36,12 @@ pub enum MeshError {
     /// More than two faces meet in an edge.
     #[error("edge {}–{} belongs to {faces} faces", vertices[0], vertices[1])]
     NonManifoldEdge { vertices: [u32; 2], faces: usize },
+    /// More than two tetrahedra meet in a face.
+    #[error("face {}–{}–{} belongs to {tetrahedra} tetrahedra", vertices[0], vertices[1], vertices[2])]
+    NonManifoldFace {
+        vertices: [u32; 3],
+        tetrahedra: usize,
+    },
     /// The faces around a vertex do not form one fan.
     #[error("the faces around vertex {vertex} do not form one fan")]
     NonManifoldVertex { vertex: u32 },
@@ -70,6 +76,7 @@ impl MeshError {
             MeshError::DegenerateFace { .. } => "degenerate-face",
             MeshError::ZeroArea => "zero-area",
             MeshError::NonManifoldEdge { .. } => "non-manifold-edge",
+            MeshError::NonManifoldFace { .. } => "non-manifold-face",
             MeshError::NonManifoldVertex { .. } => "non-manifold-vertex",
             MeshError::NotOrientable { .. } => "not-orientable",
             MeshError::InconsistentOrientation { .. } => "inconsistent-orientation",

@@ -5,6 +5,7 @@
 //! generate ─────────▲
 //! ```
 
+mod boundary;
 pub mod cut;
 mod error;
 pub mod generate;
@@ -12,6 +13,7 @@ pub mod io;
 mod prepare;
 pub mod topology;
 
+pub use boundary::{Boundary, FACES};
 pub use cut::{Cut, cut_to_disk};
 pub use error::MeshError;
 pub use generate::{Shape, generate};
@@ -41,6 +43,8 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
         format!("1 {noun}")
     } else if let Some(stem) = noun.strip_suffix("ex") {
         format!("{count} {stem}ices")
+    } else if let Some(stem) = noun.strip_suffix("hedron") {
+        format!("{count} {stem}hedra")
     } else {
         format!("{count} {noun}s")
     }

@@ -21,14 +21,12 @@ pub struct WasmMesh {
 
 #[wasm_bindgen]
 impl WasmMesh {
-    /// Reads a file's bytes; `format` is `"obj"` or `"off"`.
+    /// Reads a file's bytes; `format` is one of the names of [`Format`].
     #[wasm_bindgen(js_name = fromBytes)]
     pub fn from_bytes(bytes: &[u8], format: &str) -> Fallible<WasmMesh> {
         let format = Format::from_name(format).ok_or_else(|| {
-            invalid_argument(
-                "format",
-                &format!("\"{format}\" is not known; \"obj\" and \"off\" are"),
-            )
+            let known = Format::ALL.map(Format::name).join(", ");
+            invalid_argument("format", &format!("\"{format}\" is not known; {known} are"))
         })?;
         let file = io::read(bytes, format).map_err(thrown)?;
         Ok(Self {

@@ -2,6 +2,7 @@
 
 use super::error::{Fallible, invalid_argument, thrown};
 use super::mesh::{flat3, positions3};
+use crate::mesh::io::{self, Format};
 use crate::mesh::{MeshError, SolidMesh};
 use js_sys::{Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
@@ -11,6 +12,8 @@ use wasm_bindgen::prelude::*;
 #[derive(Debug)]
 pub struct WasmSolid {
     mesh: SolidMesh,
+    /// Of the boundary, with the solid's vertices.
+    surface: Vec<[u32; 3]>,
     notes: Vec<String>,
 }
 
@@ -36,13 +39,65 @@ impl WasmSolid {
             }
         }
         let simplices = simplices.to_vec();
-        Ok(Self {
-            mesh: SolidMesh {
+        Self::new(
+            SolidMesh {
                 positions,
                 simplices,
             },
-            notes: Vec::new(),
-        })
+            Vec::new(),
+        )
+    }
+
+    /// Reads a file's bytes; `format` is the name of a format that holds tetrahedra.
+    #[wasm_bindgen(js_name = fromBytes)]
+    pub fn from_bytes(bytes: &[u8], format: &str) -> Fallible<WasmSolid> {
+        let known = Format::ALL.into_iter().filter(|f| f.holds_solids());
+        let Some(format) = known.clone().find(|f| f.name() == format) else {
+            let known: Vec<_> = known.map(Format::name).collect();
+            let what = format!("\"{format}\": {}, node are known", known.join(", "));
+            return Err(invalid_argument("format", &what));
+        };
+        let file = io::read_solid(bytes, format).map_err(thrown)?;
+        Self::new(file.mesh, file.notes)
+    }
+
+    /// Reads the bytes of a .node file and of its .ele file.
+    #[wasm_bindgen(js_name = fromNodeAndEle)]
+    pub fn from_node_and_ele(node: &[u8], ele: &[u8]) -> Fallible<WasmSolid> {
+        let nodes = io::read_node(node).map_err(thrown)?;
+        Self::new(io::read_ele(ele, nodes).map_err(thrown)?, Vec::new())
+    }
+
+    /// These tetrahedra with their vertices elsewhere, n × 3, as a file; a format of surfaces
+    /// gets the boundary.
+    pub fn write(&self, positions: &[f64], format: &str) -> Fallible<Vec<u8>> {
+        let Some(format) = Format::ALL.into_iter().find(|f| f.name() == format) else {
+            let known = Format::ALL.map(Format::name).join(", ");
+            return Err(invalid_argument(
+                "format",
+                &format!("\"{format}\": {known} are known"),
+            ));
+        };
+        let positions = positions3(positions)?;
+        if positions.len() != self.mesh.positions.len() {
+            let what = format!(
+                "{} points of {}",
+                positions.len(),
+                self.mesh.positions.len()
+            );
+            return Err(invalid_argument("positions", &what));
+        }
+        let solid = SolidMesh {
+            positions,
+            simplices: self.mesh.simplices.clone(),
+        };
+        match io::write_solid(&solid, format) {
+            Some(bytes) => Ok(bytes),
+            None => {
+                let boundary = solid.boundary().map_err(thrown)?;
+                Ok(io::write(&boundary.mesh, format))
+            }
+        }
     }
 
     /// Positions, n × 3, interleaved (a copy).
@@ -60,7 +115,7 @@ impl WasmSolid {
     /// The triangles of the boundary, k × 3, seen counter-clockwise from outside.
     #[wasm_bindgen(getter)]
     pub fn surface(&self) -> Uint32Array {
-        Uint32Array::from(boundary(&self.mesh.simplices).as_flattened())
+        Uint32Array::from(self.surface.as_flattened())
     }
 
     /// What reading mended or noticed, in words.
@@ -71,21 +126,18 @@ impl WasmSolid {
 }
 
 impl WasmSolid {
+    fn new(mesh: SolidMesh, notes: Vec<String>) -> Fallible<Self> {
+        let boundary = mesh.boundary().map_err(thrown)?;
+        let vertex = |v: u32| boundary.vertices[v as usize];
+        let triangles = boundary.mesh.simplices.iter();
+        Ok(Self {
+            surface: triangles.map(|t| t.map(vertex)).collect(),
+            mesh,
+            notes,
+        })
+    }
+
     pub(super) fn mesh(&self) -> &SolidMesh {
         &self.mesh
     }
-}
-
-fn boundary(tetrahedra: &[[u32; 4]]) -> Vec<[u32; 3]> {
-    let mut faces: Vec<([u32; 3], [u32; 3])> = Vec::new();
-    for &[a, b, c, d] in tetrahedra {
-        for face in [[b, c, d], [a, d, c], [a, b, d], [a, c, b]] {
-            let mut key = face;
-            key.sort_unstable();
-            faces.push((key, face));
-        }
-    }
-    faces.sort_unstable();
-    let same = faces.chunk_by(|a, b| a.0 == b.0);
-    same.filter(|c| c.len() == 1).map(|c| c[0].1).collect()
 }

@@ -33,7 +33,7 @@ pub enum Command {
 /// Flatten a triangle mesh; exit code 2 when it did not converge.
 #[derive(Debug, Args)]
 pub struct Parameterize {
-    /// Mesh to flatten: .obj or .off, also with .gz behind.
+    /// Mesh to flatten: .obj, .off, .ply, .stl, .mesh, .msh or .vtk, also with .gz behind.
     #[arg(value_name = "IN")]
     pub input: PathBuf,
     /// How.
@@ -83,10 +83,11 @@ pub struct Parameterize {
 /// Deform an elastic solid to the minimum of its energy; exit code 2 when it did not converge.
 #[derive(Debug, Args)]
 pub struct Deform {
-    /// Rest shape: .node and .ele (either name stands for both), also with .gz behind; INIT if left out.
+    /// Rest shape: .node and .ele (either name stands for both), .mesh, .msh or .vtk, also with .gz
+    /// behind; INIT if left out.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
-    /// Where it starts: .node, also with .gz behind. May be inverted.
+    /// Where it starts: .node, .mesh, .msh or .vtk, also with .gz behind. May be inverted.
     #[arg(long, value_name = "I")]
     pub init: PathBuf,
     /// Vertices held where they start: a text file of indices, the first vertex being 0.
@@ -123,13 +124,14 @@ pub struct Deform {
     /// Threads; 0: as many as the machine has.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
     pub threads: usize,
-    /// Write the deformed vertices: .node or .node.gz.
-    #[arg(long, value_name = "OUT.node")]
+    /// Write the deformed vertices (.node), the solid (.mesh, .msh, .vtk) or its surface (.obj, .off,
+    /// .ply, .stl), also with .gz behind.
+    #[arg(long, value_name = "OUT")]
     pub out: Option<PathBuf>,
     /// Write what happened, iteration by iteration, as JSON.
     #[arg(long, value_name = "REPORT.json")]
     pub report: Option<PathBuf>,
-    /// Compare with a solution, a .node of the same vertices: ‖x − x*‖/‖x₀ − x*‖.
+    /// Compare with a solution, a .node (.mesh, .msh, .vtk) of the same vertices: ‖x − x*‖/‖x₀ − x*‖.
     #[arg(long, value_name = "SOLUTION.node")]
     pub reference: Option<PathBuf>,
     /// Say nothing but errors.
@@ -181,7 +183,7 @@ pub struct Generate {
     /// Approximate number of triangles.
     #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
     pub triangles: u32,
-    /// Where to: .obj or .off, also with .gz behind.
+    /// Where to: .obj, .off, .ply, .stl, .mesh, .msh or .vtk, also with .gz behind.
     #[arg(long, value_name = "OUT")]
     pub out: PathBuf,
 }

@@ -4,13 +4,11 @@ use crate::arguments::Deform;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::{self, DeformReport, Iteration};
-use crate::{Outcome, files, handles, say};
+use crate::solids::{read_positions, read_solid, write_deformed};
+use crate::{Outcome, files, handles, say, solids};
 use foldfree::deformation::Deformation;
-use foldfree::mesh::SolidMesh;
-use foldfree::mesh::io::{read_ele, read_node, write_node};
 use foldfree::optim::{CancelToken, Solver, Status, Stopwatch};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
 
 /// Reads, deforms, writes, reports.
 pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
@@ -18,12 +16,16 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
     for path in [&arguments.out, &arguments.report].into_iter().flatten() {
         files::check_writable(path)?;
     }
+    if let Some(path) = &arguments.out {
+        solids::check_format(path)?;
+    }
     rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads)
         .build_global()
         .map_err(Failure::new)?;
     let rest_path = arguments.rest.as_ref().unwrap_or(&arguments.init);
-    let rest = read_solid(rest_path)?;
+    let file = read_solid(rest_path)?;
+    let rest = file.mesh;
     let start = read_positions(&arguments.init)?;
     if start.len() != rest.positions.len() {
         let (found, expected) = (start.len(), rest.positions.len());
@@ -54,8 +56,14 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
     };
     let mut deformation = Deformation::with_targets(&rest, &start, &pins, &targets, &options)
         .map_err(Failure::new)?;
+    let notes: Vec<String> = file
+        .notes
+        .iter()
+        .chain(deformation.notes())
+        .cloned()
+        .collect();
     if !arguments.quiet {
-        deformation.notes().iter().for_each(|note| say(note));
+        notes.iter().for_each(|note| say(note));
     }
 
     let distance = |positions: &[f64], solution: &[DVec3]| {
@@ -87,7 +95,7 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
     progress.finish();
 
     if let Some(path) = &arguments.out {
-        files::write(path, &write_node(&deformation.positions()))?;
+        write_deformed(path, &rest, deformation.positions())?;
     }
     let last = deformation.solver().report().clone();
     if !arguments.quiet {
@@ -116,7 +124,7 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             tetrahedra: rest.simplices.len(),
             pins: pins.len(),
             targets: targets.len(),
-            notes: deformation.notes().to_vec(),
+            notes,
             setup_seconds: deformation.setup_seconds(),
             seconds: last.seconds,
             iterations,
@@ -127,41 +135,4 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
         Status::Converged(_) => Outcome::Done,
         _ => Outcome::NotReached,
     })
-}
-
-/// The same path with another ending before an optional .gz; the one that exists, compressed or not.
-fn beside(path: &Path, ending: &str) -> Option<PathBuf> {
-    let text = path.to_string_lossy();
-    let stem = text.strip_suffix(".gz").unwrap_or(&text);
-    let stem = stem
-        .strip_suffix(".node")
-        .or_else(|| stem.strip_suffix(".ele"))?;
-    let candidates = ["", ".gz"].map(|packed| PathBuf::from(format!("{stem}.{ending}{packed}")));
-    let existing = candidates.iter().find(|p| p.exists());
-    Some(existing.unwrap_or(&candidates[0]).clone())
-}
-
-fn pair(path: &Path) -> Result<[PathBuf; 2], Failure> {
-    match (beside(path, "node"), beside(path, "ele")) {
-        (Some(node), Some(ele)) => Ok([node, ele]),
-        _ => {
-            let what = "the format is not known by this name (known: .node, .ele, also with .gz)";
-            Err(Failure::of_file(path, what))
-        }
-    }
-}
-
-fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
-    let [node, _] = pair(path)?;
-    let bytes = files::read_bytes(&node)?;
-    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
-    Ok(nodes.positions)
-}
-
-fn read_solid(path: &Path) -> Result<SolidMesh, Failure> {
-    let [node, ele] = pair(path)?;
-    let bytes = files::read_bytes(&node)?;
-    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
-    let bytes = files::read_bytes(&ele)?;
-    read_ele(&bytes, nodes).map_err(|error| Failure::of_file(&ele, error))
 }

@@ -25,14 +25,8 @@ pub fn read_mesh(path: &Path) -> Result<SurfaceFile, Failure> {
 pub fn format(path: &Path) -> Result<Format, Failure> {
     let name = path.file_name().map(|n| n.to_string_lossy());
     Format::from_name(&name.unwrap_or_default()).ok_or_else(|| {
-        let known: Vec<String> = Format::ALL
-            .iter()
-            .map(|f| format!(".{0}, .{0}.gz", f.name()))
-            .collect();
-        let what = format!(
-            "the format is not known by this name (known: {})",
-            known.join(", ")
-        );
+        let known = Format::ALL.map(|f| format!(".{}", f.name())).join(", ");
+        let what = format!("the format is not known by this name (known: {known}, also with .gz)");
         Failure::of_file(path, what)
     })
 }

@@ -3,17 +3,14 @@
 use crate::arguments::Generate;
 use crate::failure::Failure;
 use crate::{Outcome, files, say};
-use foldfree::mesh::io::{self, Format};
+use foldfree::mesh::io;
 
 /// Makes the mesh and writes it.
 pub fn run(arguments: &Generate) -> Result<Outcome, Failure> {
     let format = files::format(&arguments.out)?;
     files::check_writable(&arguments.out)?;
     let mesh = foldfree::mesh::generate(arguments.shape, arguments.triangles as usize);
-    let bytes = match format {
-        Format::Obj => io::write_obj(&mesh, None),
-        Format::Off => io::write_off(&mesh),
-    };
+    let bytes = io::write(&mesh, format);
     files::write(&arguments.out, &bytes)?;
     say(&format!(
         "{}: {} vertices, {} triangles",

@@ -21,6 +21,8 @@ pub enum ParseErrorKind {
     Unsupported,
     /// More elements than the file can hold or the reader takes.
     TooLarge,
+    /// Triangles only where tetrahedra were asked for, or the other way round.
+    WrongElements,
 }
 
 impl ParseErrorKind {
@@ -35,17 +37,18 @@ impl ParseErrorKind {
             ParseErrorKind::IndexOutOfRange => "index-out-of-range",
             ParseErrorKind::Unsupported => "unsupported",
             ParseErrorKind::TooLarge => "too-large",
+            ParseErrorKind::WrongElements => "wrong-elements",
         }
     }
 }
 
 /// Why a file cannot be read, and where.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, serde::Serialize)]
-#[error("line {line}, column {column}: {what}")]
+#[error("{}: {what}", self.place())]
 pub struct ParseError {
-    /// 1-based line.
+    /// 1-based line; 0 in the binary part of a file.
     pub line: usize,
-    /// 1-based column (bytes).
+    /// 1-based column (bytes); in the binary part of a file the byte, the file's first being 1.
     pub column: usize,
     /// What is wrong, in words.
     pub what: String,
@@ -57,6 +60,40 @@ impl ParseError {
     /// A short stable name of the error's kind.
     pub fn code(&self) -> &'static str {
         "parse"
+    }
+
+    fn place(&self) -> String {
+        match self.line {
+            0 => format!("byte {}", self.column),
+            line => format!("line {line}, column {}", self.column),
+        }
+    }
+
+    /// The error at a byte offset of binary data.
+    #[cold]
+    pub(super) fn in_binary(offset: usize, kind: ParseErrorKind, what: String) -> Self {
+        Self {
+            line: 0,
+            column: offset + 1,
+            what,
+            kind,
+        }
+    }
+
+    /// Names the item that is being read, where no line does.
+    #[cold]
+    pub(super) fn within(self, item: &str, number: usize) -> Self {
+        match self.line {
+            0 => self.named(item, number),
+            _ => self,
+        }
+    }
+
+    /// Names the item that is being read.
+    #[cold]
+    pub(super) fn named(mut self, item: &str, number: usize) -> Self {
+        self.what = format!("{item} {number}: {}", self.what);
+        self
     }
 
     /// The error at a byte offset: counts the lines up to it.

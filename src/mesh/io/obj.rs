@@ -1,6 +1,6 @@
 //! Wavefront OBJ: `v`, `vt` and `f` are read, `vn` and everything else is passed over.
 
-use super::polygon::{MAX_CLIPPED_CORNERS, Outcome, triangulate};
+use super::polygon::{Outcome, too_large, triangulate};
 use super::scan::{Scanner, Token, parse_integer, quote, write_number};
 use super::{CornerTexture, ParseError, ParseErrorKind, SurfaceFile};
 use crate::mesh::{SurfaceMesh, counted};
@@ -289,10 +289,7 @@ impl Reader<'_> {
                 Outcome::Clean => {}
                 Outcome::Doubtful => doubtful += 1,
                 Outcome::TooLarge => {
-                    let what = format!(
-                        "a polygon of {} corners that is not convex (at most {MAX_CLIPPED_CORNERS} are taken)",
-                        polygon.corners
-                    );
+                    let what = too_large(polygon.corners);
                     return Err(self
                         .scanner
                         .error(polygon.at, ParseErrorKind::TooLarge, what));

@@ -3,7 +3,7 @@
 //! Normals, colours and texture coordinates behind the three coordinates of a vertex and colours
 //! behind a face are passed over.
 
-use super::polygon::{MAX_CLIPPED_CORNERS, Outcome, triangulate};
+use super::polygon::Faces;
 use super::scan::{Scanner, Token, parse_integer, quote, write_number};
 use super::{ParseError, ParseErrorKind, SurfaceFile};
 use crate::mesh::SurfaceMesh;
@@ -129,9 +129,8 @@ fn read_faces(
 ) -> Result<(), ParseError> {
     let vertices = file.mesh.positions.len();
     let mut corners: Vec<u32> = Vec::new();
-    let (mut points, mut triangles) = (Vec::new(), Vec::new());
-    let (mut polygons, mut doubtful) = (0, 0);
-    file.mesh.simplices.reserve_exact(count);
+    let mut faces = Faces::default();
+    faces.triangles.reserve_exact(count);
     for index in 0..count {
         let Some(token) = scanner.first_token() else {
             return Err(scanner.ends(format!("the file ends behind face {index} of {count}")));
@@ -156,27 +155,13 @@ fn read_faces(
             corners.push(vertex as u32);
         }
         scanner.skip_line();
-        if let [a, b, c] = corners[..] {
-            file.mesh.simplices.push([a, b, c]);
-            continue;
-        }
-        polygons += 1;
-        points.clear();
-        points.extend(corners.iter().map(|&v| file.mesh.positions[v as usize]));
-        match triangulate(&points, &mut triangles) {
-            Outcome::Clean => {}
-            Outcome::Doubtful => doubtful += 1,
-            Outcome::TooLarge => {
-                let what = format!(
-                    "a polygon of {size} corners that is not convex (at most {MAX_CLIPPED_CORNERS} are taken)"
-                );
-                return Err(scanner.error(at, ParseErrorKind::TooLarge, what));
-            }
-        }
-        let faces = triangles.iter().map(|t| t.map(|k| corners[k as usize]));
-        file.mesh.simplices.extend(faces);
+        let too_large = |what| scanner.error(at, ParseErrorKind::TooLarge, what);
+        faces
+            .push(&corners, &file.mesh.positions)
+            .map_err(too_large)?;
     }
-    super::note_polygons(&mut file.notes, polygons, doubtful);
+    faces.note(&mut file.notes);
+    file.mesh.simplices = faces.triangles;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 /// Polygons of more corners than this that are not fans are refused (ear clipping is quadratic).
-pub(super) const MAX_CLIPPED_CORNERS: usize = 4096;
+const MAX_CLIPPED_CORNERS: usize = 4096;
 
 /// How a polygon came apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +14,52 @@ pub(super) enum Outcome {
     Doubtful,
     /// Not a fan, and more than [`MAX_CLIPPED_CORNERS`] corners.
     TooLarge,
+}
+
+/// Collects faces of any number of corners as triangles.
+#[derive(Default)]
+pub(super) struct Faces {
+    /// The triangles.
+    pub triangles: Vec<[u32; 3]>,
+    polygons: usize,
+    doubtful: usize,
+    points: Vec<DVec3>,
+    split: Vec<[u32; 3]>,
+}
+
+impl Faces {
+    /// Adds a face of three corners or more, all of them within range; what is wrong if it cannot be
+    /// triangulated.
+    pub fn push(&mut self, corners: &[u32], positions: &[DVec3]) -> Result<(), String> {
+        if let &[a, b, c] = corners {
+            self.triangles.push([a, b, c]);
+            return Ok(());
+        }
+        self.polygons += 1;
+        self.points.clear();
+        self.points
+            .extend(corners.iter().map(|&v| positions[v as usize]));
+        match triangulate(&self.points, &mut self.split) {
+            Outcome::Clean => {}
+            Outcome::Doubtful => self.doubtful += 1,
+            Outcome::TooLarge => return Err(too_large(corners.len())),
+        }
+        let faces = self.split.iter().map(|t| t.map(|k| corners[k as usize]));
+        self.triangles.extend(faces);
+        Ok(())
+    }
+
+    /// Says what became of the polygons.
+    pub fn note(&self, notes: &mut Vec<String>) {
+        super::note_polygons(notes, self.polygons, self.doubtful);
+    }
+}
+
+/// What is wrong with a polygon that is [`Outcome::TooLarge`].
+pub(super) fn too_large(corners: usize) -> String {
+    format!(
+        "a polygon of {corners} corners that is not convex (at most {MAX_CLIPPED_CORNERS} are taken)"
+    )
 }
 
 /// Replaces `out` by the `points.len() − 2` triangles of the polygon (indices into `points`).

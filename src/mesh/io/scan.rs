@@ -3,6 +3,7 @@
 use super::{ParseError, ParseErrorKind};
 
 /// The cursor. Positions are byte offsets; lines are only counted when an error needs them.
+#[derive(Clone)]
 pub(super) struct Scanner<'a> {
     bytes: &'a [u8],
     position: usize,
@@ -35,6 +36,47 @@ impl<'a> Scanner<'a> {
     /// Bytes left.
     pub fn remaining(&self) -> usize {
         self.bytes.len() - self.position
+    }
+
+    /// Bytes passed.
+    pub fn position(&self) -> usize {
+        self.position
+    }
+
+    /// The next bytes whatever they are, if there are so many.
+    #[inline]
+    pub fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let taken = self.bytes[self.position..].get(..length)?;
+        self.position += length;
+        Some(taken)
+    }
+
+    /// The rest of this line without its end, comments and all; moves behind its end.
+    pub fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = &self.bytes[self.position..];
+        let length = rest
+            .iter()
+            .position(|b| matches!(b, b'\n' | b'\r'))
+            .unwrap_or(rest.len());
+        self.position += length;
+        self.position += self.line_end(self.position).unwrap_or(0);
+        &rest[..length]
+    }
+
+    /// Moves behind the next occurrence of these bytes; `None`: there is none.
+    pub fn skip_past(&mut self, wanted: &[u8]) -> Option<()> {
+        let rest = &self.bytes[self.position..];
+        let at = rest.windows(wanted.len()).position(|w| w == wanted)?;
+        self.position += at + wanted.len();
+        Some(())
+    }
+
+    /// Moves to the next token, on this line or a later one.
+    #[inline]
+    pub fn find_token(&mut self) {
+        if let Some(token) = self.first_token() {
+            self.position = token.start;
+        }
     }
 
     /// The line end at the cursor (after a backslash: the one it hides), as a number of bytes.
@@ -125,6 +167,31 @@ impl<'a> Scanner<'a> {
     #[cold]
     pub fn error(&self, at: usize, kind: ParseErrorKind, what: impl Into<String>) -> ParseError {
         ParseError::at(self.bytes, at, kind, what.into())
+    }
+
+    /// A count that the file claims at an offset, held against what is left of it when an item takes
+    /// `shortest` bytes (the last may lack its line end).
+    pub fn check_claim(
+        &self,
+        at: usize,
+        count: u64,
+        items: &str,
+        shortest: u64,
+    ) -> Result<usize, ParseError> {
+        let remaining = self.remaining() as u64;
+        let needed = count.saturating_mul(shortest);
+        if needed <= remaining + 1 && count < u64::from(u32::MAX) {
+            return Ok(count as usize);
+        }
+        let kind = if remaining == 0 || needed < 4 * remaining {
+            ParseErrorKind::Truncated
+        } else {
+            ParseErrorKind::TooLarge
+        };
+        let what = format!(
+            "the file claims {count} {items}, the {remaining} bytes behind that cannot hold them"
+        );
+        Err(self.error(at, kind, what))
     }
 
     /// The error for a line that ends too early.

@@ -210,7 +210,11 @@ fn formats_by_name() {
         assert_eq!(Format::from_name(name), Some(Format::Obj), "{name}");
     }
     assert_eq!(Format::from_name("b.off"), Some(Format::Off));
-    assert_eq!(Format::from_name("b.ply"), None);
+    assert_eq!(Format::from_name("b.MESH.gz"), Some(Format::Medit));
+    for format in Format::ALL {
+        assert_eq!(Format::from_name(format.name()), Some(format));
+    }
+    assert_eq!(Format::from_name("b.meshb"), None);
     assert_eq!(Format::from_name(""), None);
 }
 

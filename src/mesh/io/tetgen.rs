@@ -40,18 +40,7 @@ fn header(
         return Err(scanner.error(token.start, ParseErrorKind::Unsupported, what));
     }
     scanner.skip_line();
-    let remaining = scanner.remaining() as u64;
-    if count.saturating_mul(shortest) > remaining + 1 {
-        let kind = match count.saturating_mul(shortest) < 4 * remaining {
-            true => ParseErrorKind::Truncated,
-            false => ParseErrorKind::TooLarge,
-        };
-        let what = format!(
-            "the header claims {count} {items}, the {remaining} bytes behind it cannot hold them"
-        );
-        return Err(scanner.error(start, kind, what));
-    }
-    Ok(count as usize)
+    scanner.check_claim(start, count, items, shortest)
 }
 
 /// The index a line begins with, which must be `expected`.

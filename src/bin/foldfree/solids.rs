@@ -1,0 +1,91 @@
+//! Solids in and out: .node with its .ele beside it, or one file that holds both.
+
+use crate::failure::Failure;
+use crate::files;
+use foldfree::mesh::SolidMesh;
+use foldfree::mesh::io::{self, Format, SolidFile, read_ele, read_node, write_node};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+/// The same path with another ending before an optional .gz; the one that exists, compressed or not.
+/// `None`: this is neither a .node nor an .ele file.
+fn beside(path: &Path, ending: &str) -> Option<PathBuf> {
+    let text = path.to_string_lossy();
+    let stem = text.strip_suffix(".gz").unwrap_or(&text);
+    let stem = stem
+        .strip_suffix(".node")
+        .or_else(|| stem.strip_suffix(".ele"))?;
+    let candidates = ["", ".gz"].map(|packed| PathBuf::from(format!("{stem}.{ending}{packed}")));
+    let existing = candidates.iter().find(|p| p.exists());
+    Some(existing.unwrap_or(&candidates[0]).clone())
+}
+
+/// The format a name stands for, of those with one file.
+fn format(path: &Path) -> Result<Format, Failure> {
+    let name = path.file_name().map(|n| n.to_string_lossy());
+    Format::from_name(&name.unwrap_or_default()).ok_or_else(|| {
+        let solids = Format::ALL.into_iter().filter(|f| f.holds_solids());
+        let known: Vec<String> = solids.map(|f| format!(".{}", f.name())).collect();
+        let what = format!(
+            "the format is not known by this name (known: .node, .ele, {}, also with .gz)",
+            known.join(", ")
+        );
+        Failure::of_file(path, what)
+    })
+}
+
+/// Reads a solid, by the ending of the file's name.
+pub fn read_solid(path: &Path) -> Result<SolidFile, Failure> {
+    let (Some(node), Some(ele)) = (beside(path, "node"), beside(path, "ele")) else {
+        let format = format(path)?;
+        let bytes = files::read_bytes(path)?;
+        return io::read_solid(&bytes, format).map_err(|error| Failure::of_file(path, error));
+    };
+    let bytes = files::read_bytes(&node)?;
+    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
+    let bytes = files::read_bytes(&ele)?;
+    Ok(SolidFile {
+        mesh: read_ele(&bytes, nodes).map_err(|error| Failure::of_file(&ele, error))?,
+        notes: Vec::new(),
+    })
+}
+
+/// Reads the vertices of a solid; no .ele file is needed.
+pub fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
+    let Some(node) = beside(path, "node") else {
+        return Ok(read_solid(path)?.mesh.positions);
+    };
+    let bytes = files::read_bytes(&node)?;
+    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
+    Ok(nodes.positions)
+}
+
+/// Fails when [`write_deformed`] would not know the name: said before the work rather than after.
+pub fn check_format(path: &Path) -> Result<(), Failure> {
+    match beside(path, "node") {
+        Some(_) => Ok(()),
+        None => format(path).map(|_| ()),
+    }
+}
+
+/// Writes a deformed solid: its vertices (.node), vertices and elements, or, in a format of surfaces,
+/// the boundary.
+pub fn write_deformed(path: &Path, rest: &SolidMesh, to: Vec<DVec3>) -> Result<(), Failure> {
+    if beside(path, "node").is_some() {
+        return files::write(path, &write_node(&to));
+    }
+    let format = format(path)?;
+    let solid = SolidMesh {
+        positions: to,
+        simplices: rest.simplices.clone(),
+    };
+    let bytes = match io::write_solid(&solid, format) {
+        Some(bytes) => bytes,
+        None => {
+            let boundary = solid.boundary();
+            let boundary = boundary.map_err(|error| Failure::of_file(path, error))?;
+            io::write(&boundary.mesh, format)
+        }
+    };
+    files::write(path, &bytes)
+}
