@@ -1,9 +1,10 @@
 //! Tetrahedral meshes in and out.
 
 use super::error::{Fallible, invalid_argument, thrown};
-use super::mesh::{flat3, positions3};
+use super::mesh::{ShapeInfo, flat3, positions3};
+use super::to_js;
 use crate::mesh::io::{self, Format};
-use crate::mesh::{MeshError, SolidMesh};
+use crate::mesh::{MeshError, SolidMesh, SolidShape, generate_solid};
 use js_sys::{Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -100,6 +101,13 @@ impl WasmSolid {
         }
     }
 
+    /// Generates a sample solid of about so many tetrahedra; the names are those of `solidShapes()`.
+    pub fn generate(name: &str, tetrahedra: usize) -> Fallible<WasmSolid> {
+        let shape = SolidShape::from_name(name)
+            .ok_or_else(|| invalid_argument("name", &format!("there is no solid \"{name}\"")))?;
+        Self::new(generate_solid(shape, tetrahedra), Vec::new())
+    }
+
     /// Positions, n × 3, interleaved (a copy).
     #[wasm_bindgen(getter)]
     pub fn positions(&self) -> Float64Array {
@@ -140,4 +148,18 @@ impl WasmSolid {
     pub(super) fn mesh(&self) -> &SolidMesh {
         &self.mesh
     }
+}
+
+/// The sample solids.
+#[wasm_bindgen(js_name = solidShapes, unchecked_return_type = "ShapeInfo[]")]
+pub fn solid_shapes() -> Fallible<JsValue> {
+    let shapes: Vec<_> = SolidShape::ALL
+        .iter()
+        .map(|shape| ShapeInfo {
+            name: shape.name(),
+            title: shape.title(),
+            description: shape.describe(),
+        })
+        .collect();
+    to_js(&shapes)
 }
