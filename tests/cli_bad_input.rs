@@ -289,8 +289,8 @@ fn arguments_that_make_no_sense() {
         .foldfree("generate torus --triangles 3000000000 --out a.obj")
         .fails(&["--triangles"]);
     folder
-        .foldfree("generate torus --out a.stl")
-        .fails(&["a.stl"]);
+        .foldfree("generate torus --out a.glb")
+        .fails(&["a.glb"]);
     folder.foldfree("").fails(&["--help"]);
     folder.foldfree("check a.obj --rest").fails(&["--rest"]);
 }

@@ -13,8 +13,8 @@ export async function readMeshFile(file) {
     name = name.replace(/\.gz$/i, '');
     stream = stream.pipeThrough(new DecompressionStream('gzip'));
   }
-  const format = /\.(obj|off)$/i.exec(name)?.[1].toLowerCase();
-  if (!format) throw new Error('this page reads OBJ and OFF files (also .gz)');
+  const format = /\.(obj|off|ply|stl|mesh|msh|vtk)$/i.exec(name)?.[1].toLowerCase();
+  if (!format) throw new Error('this page reads OBJ, OFF, PLY, STL, MEDIT .mesh, MSH and VTK files (also .gz)');
   let bytes;
   try {
     bytes = new Uint8Array(await new Response(stream).arrayBuffer());

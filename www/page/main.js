@@ -345,7 +345,7 @@ async function exporting(act) {
   $('export-menu').hidePopover();
   if (!whenReady(() => exporting(act))) return;
   try {
-    await act((source.name ?? source.sample).replace(/\.(obj|off)(\.gz)?$/i, ''));
+    await act((source.name ?? source.sample).replace(/\.(obj|off|ply|stl|mesh|msh|vtk)(\.gz)?$/i, ''));
   } catch (error) {
     notice('Nothing was exported', describe(error));
   }
