@@ -37,7 +37,7 @@ mod winding;
 
 pub use corners::CornerMap;
 pub use crossings::BoundaryCrossing;
-pub use predicates::orientation;
+pub use predicates::{orientation, orientation_of_tetrahedron};
 pub use segments::CrossingKind;
 
 use crate::Error;
