@@ -4,13 +4,12 @@ use crate::arguments::Deform;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::report::{self, DeformReport, Iteration};
+use crate::solids::{read_positions, read_solid};
 use crate::{Outcome, files, handles, say};
 use foldfree::deformation::Deformation;
-use foldfree::mesh::SolidMesh;
-use foldfree::mesh::io::{read_ele, read_node, write_node};
+use foldfree::mesh::io::write_node;
 use foldfree::optim::{CancelToken, Solver, Status, Stopwatch};
 use glam::DVec3;
-use std::path::{Path, PathBuf};
 
 /// Reads, deforms, writes, reports.
 pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
@@ -89,6 +88,9 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.out {
         files::write(path, &write_node(&deformation.positions()))?;
     }
+    let clock = Stopwatch::start();
+    let certificate = deformation.certificate();
+    let certificate_seconds = clock.seconds();
     let last = deformation.solver().report().clone();
     if !arguments.quiet {
         say(&format!(
@@ -99,6 +101,7 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             last.energy,
             last.inverted,
         ));
+        say(&certificate.summary());
         if let Some(error) = iterations.last().and_then(|i| i.position_error) {
             say(&format!("position error against the reference: {error:e}"));
         }
@@ -120,6 +123,8 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             setup_seconds: deformation.setup_seconds(),
             seconds: last.seconds,
             iterations,
+            certificate,
+            certificate_seconds,
         };
         files::write(path, &report::to_json(&report)?)?;
     }
@@ -127,41 +132,4 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
         Status::Converged(_) => Outcome::Done,
         _ => Outcome::NotReached,
     })
-}
-
-/// The same path with another ending before an optional .gz; the one that exists, compressed or not.
-fn beside(path: &Path, ending: &str) -> Option<PathBuf> {
-    let text = path.to_string_lossy();
-    let stem = text.strip_suffix(".gz").unwrap_or(&text);
-    let stem = stem
-        .strip_suffix(".node")
-        .or_else(|| stem.strip_suffix(".ele"))?;
-    let candidates = ["", ".gz"].map(|packed| PathBuf::from(format!("{stem}.{ending}{packed}")));
-    let existing = candidates.iter().find(|p| p.exists());
-    Some(existing.unwrap_or(&candidates[0]).clone())
-}
-
-fn pair(path: &Path) -> Result<[PathBuf; 2], Failure> {
-    match (beside(path, "node"), beside(path, "ele")) {
-        (Some(node), Some(ele)) => Ok([node, ele]),
-        _ => {
-            let what = "the format is not known by this name (known: .node, .ele, also with .gz)";
-            Err(Failure::of_file(path, what))
-        }
-    }
-}
-
-fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
-    let [node, _] = pair(path)?;
-    let bytes = files::read_bytes(&node)?;
-    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
-    Ok(nodes.positions)
-}
-
-fn read_solid(path: &Path) -> Result<SolidMesh, Failure> {
-    let [node, ele] = pair(path)?;
-    let bytes = files::read_bytes(&node)?;
-    let nodes = read_node(&bytes).map_err(|error| Failure::of_file(&node, error))?;
-    let bytes = files::read_bytes(&ele)?;
-    read_ele(&bytes, nodes).map_err(|error| Failure::of_file(&ele, error))
 }

@@ -14,6 +14,7 @@ mod parameterize;
 mod progress;
 mod reference;
 mod report;
+mod solids;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
