@@ -28,7 +28,7 @@ fn singular_values([a, b, c, d]: [f64; 4]) -> (f64, f64) {
 }
 
 /// The power of two that brings the largest coordinate between 1 and 2; 1 when there is none.
-fn normalizing(largest: f64) -> f64 {
+pub(super) fn normalizing(largest: f64) -> f64 {
     if largest == 0.0 || !largest.is_finite() {
         return 1.0;
     }

@@ -1,4 +1,5 @@
-//! Exact checks on a finished map of a surface into the plane.
+//! Exact checks on a finished map: of a surface into the plane ([`Certificate`], below), or of a solid
+//! in space ([`SolidCertificate`], whose module says what it proves).
 //!
 //! # What is proven
 //! Signs of areas and meetings of edges are decided exactly, for every finite input, so what a
@@ -31,14 +32,16 @@ mod crossings;
 mod distortion;
 mod predicates;
 mod segments;
+pub mod solid;
 mod summary;
 mod surface;
 mod winding;
 
 pub use corners::CornerMap;
 pub use crossings::BoundaryCrossing;
-pub use predicates::orientation;
+pub use predicates::{orientation, orientation_of_tetrahedron};
 pub use segments::CrossingKind;
+pub use solid::SolidCertificate;
 
 use crate::Error;
 use crate::mesh::{MeshError, SurfaceMesh};

@@ -90,7 +90,7 @@ fn count(n: usize, what: &str) -> String {
 }
 
 /// Seven significant digits, in scientific notation where the plain one is unreadable.
-fn number(x: f64) -> String {
+pub(super) fn number(x: f64) -> String {
     if x.is_nan() {
         return "undefined".into();
     }

@@ -48,7 +48,9 @@ impl Surface {
         let euler = used_count as i64 - edges as i64 + triangles.len() as i64;
 
         let mut loops = DisjointSets::new(vertices);
-        boundary.iter().for_each(|&[a, b]| loops.join(a, b));
+        for &[a, b] in &boundary {
+            loops.join(a, b);
+        }
         let simple = is_simple(&boundary);
         // A union of cycles with n vertices and n edges is joined n − (number of cycles) times.
         let boundary_loops = if simple {
@@ -105,13 +107,13 @@ fn edge_groups(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
 }
 
 /// Union–find with path halving; counts the joins that joined something.
-struct DisjointSets {
+pub(super) struct DisjointSets {
     parent: Vec<u32>,
     joins: usize,
 }
 
 impl DisjointSets {
-    fn new(n: usize) -> Self {
+    pub(super) fn new(n: usize) -> Self {
         Self {
             parent: (0..n as u32).collect(),
             joins: 0,
@@ -127,12 +129,14 @@ impl DisjointSets {
         i
     }
 
-    fn join(&mut self, a: u32, b: u32) {
+    /// Joins the sets of a and b; were they two?
+    pub(super) fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         if a != b {
             self.parent[a.max(b) as usize] = a.min(b);
             self.joins += 1;
         }
+        a != b
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{DeformationMethod, DeformationOptions, Material, Supports};
 use crate::Error;
+use crate::certificate::SolidCertificate;
 use crate::energy::{Arap, Energy, NeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
 use crate::mesh::{MeshError, SolidMesh};
@@ -21,6 +22,7 @@ pub struct Target {
 
 /// A deformation in progress.
 pub struct Deformation {
+    rest: SolidMesh,
     notes: Vec<String>,
     setup_seconds: f64,
     supports: Supports,
@@ -108,6 +110,7 @@ impl Deformation {
             AnyMaterial::SymmetricDirichlet(energy) => build(problem, energy, options),
         }?;
         Ok(Self {
+            rest: rest.clone(),
             notes,
             setup_seconds: clock.seconds(),
             supports,
@@ -155,6 +158,10 @@ impl Deformation {
     pub fn positions(&self) -> Vec<DVec3> {
         let positions = self.solver.positions().as_chunks::<3>().0;
         positions.iter().map(|&p| DVec3::from_array(p)).collect()
+    }
+    /// What is known for certain of the newest iterate, as a map of the rest shape.
+    pub fn certificate(&self) -> SolidCertificate {
+        SolidCertificate::of_solid(&self.rest, &self.positions())
     }
     /// Seconds that [`Self::new`] took.
     pub fn setup_seconds(&self) -> f64 {

@@ -154,13 +154,15 @@ impl Deform {
     }
 }
 
-/// Check a map exactly; exit code 2 when it folds (a triangle is inverted or degenerate).
+/// Check a map exactly; exit code 2 when it folds (a triangle or tetrahedron is inverted or degenerate).
 #[derive(Debug, Args)]
 pub struct Check {
-    /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh; also with .gz behind.
+    /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh, or the .node of a deformed
+    /// solid; also with .gz behind.
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
-    /// The surface that is mapped, where it is not in MAP: the same triangles in the same order.
+    /// The surface that is mapped, where it is not in MAP: the same triangles in the same order. The solid
+    /// that is deformed: .node and .ele.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
     /// Exit code 2 also when the map overlaps itself (is not injective as a whole).

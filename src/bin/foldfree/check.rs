@@ -3,8 +3,8 @@
 use crate::arguments::Check;
 use crate::failure::Failure;
 use crate::report::CheckReport;
-use crate::{Outcome, files, say};
-use foldfree::certificate::Certificate;
+use crate::{Outcome, files, say, solids};
+use foldfree::certificate::{Certificate, SolidCertificate};
 use foldfree::mesh::prepare;
 use foldfree::optim::Stopwatch;
 
@@ -12,6 +12,9 @@ use foldfree::optim::Stopwatch;
 pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.report {
         files::check_writable(path)?;
+    }
+    if solids::is_solid(&arguments.map) {
+        return run_on_solid(arguments);
     }
     let mut map = files::read_map(&arguments.map, arguments.rest.as_deref())?;
     let mut notes = Vec::new();
@@ -34,6 +37,51 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
     } else {
         certificate.is_free_of_folds()
     };
+    finish(arguments, notes, certificate, certificate_seconds, fine)
+}
+
+/// The same for the deformed vertices of a solid.
+fn run_on_solid(arguments: &Check) -> Result<Outcome, Failure> {
+    let Some(rest_path) = &arguments.rest else {
+        let what = "a solid is deformed from its rest shape: give it with --rest";
+        return Err(Failure::of_file(&arguments.map, what));
+    };
+    if arguments.global {
+        let what = "--global is not known for solids: only what is around every point is examined";
+        return Err(Failure::new(what));
+    }
+    let file = solids::read_solid(rest_path)?;
+    let rest = file.mesh;
+    let positions = solids::read_positions(&arguments.map)?;
+    if positions.len() != rest.positions.len() {
+        let (found, expected) = (positions.len(), rest.positions.len());
+        let what = format!("has {found} vertices, the rest shape {expected}");
+        return Err(Failure::of_file(&arguments.map, what));
+    }
+    let clock = Stopwatch::start();
+    let certificate = SolidCertificate::try_of_solid(&rest, &positions)
+        .map_err(|error| Failure::of_file(rest_path, error))?;
+    let certificate_seconds = clock.seconds();
+    if !arguments.quiet {
+        say(&certificate.summary());
+    }
+    let fine = certificate.is_free_of_folds();
+    finish(
+        arguments,
+        file.notes,
+        certificate,
+        certificate_seconds,
+        fine,
+    )
+}
+
+fn finish(
+    arguments: &Check,
+    notes: Vec<String>,
+    certificate: impl serde::Serialize,
+    certificate_seconds: f64,
+    fine: bool,
+) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.report {
         let report = CheckReport {
             program: crate::report::PROGRAM,

@@ -97,6 +97,9 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.out {
         write_deformed(path, &rest, deformation.positions())?;
     }
+    let clock = Stopwatch::start();
+    let certificate = deformation.certificate();
+    let certificate_seconds = clock.seconds();
     let last = deformation.solver().report().clone();
     if !arguments.quiet {
         say(&format!(
@@ -107,6 +110,7 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             last.energy,
             last.inverted,
         ));
+        say(&certificate.summary());
         if let Some(error) = iterations.last().and_then(|i| i.position_error) {
             say(&format!("position error against the reference: {error:e}"));
         }
@@ -128,6 +132,8 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             setup_seconds: deformation.setup_seconds(),
             seconds: last.seconds,
             iterations,
+            certificate,
+            certificate_seconds,
         };
         files::write(path, &report::to_json(&report)?)?;
     }

@@ -1,7 +1,7 @@
 //! REPORT.json. Its keys are snake_case throughout.
 
 use crate::failure::Failure;
-use foldfree::certificate::Certificate;
+use foldfree::certificate::{Certificate, SolidCertificate};
 use foldfree::optim::{Phase, PhaseKind, Status, StepReport};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -112,16 +112,19 @@ pub struct DeformReport {
     /// Seconds of all iterations.
     pub seconds: f64,
     pub iterations: Vec<Iteration>,
+    #[serde(serialize_with = "snake_keys")]
+    pub certificate: SolidCertificate,
+    pub certificate_seconds: f64,
 }
 
-/// The report of `check`.
+/// The report of `check`, on a map of a surface ([`Certificate`]) or of a solid ([`SolidCertificate`]).
 #[derive(Debug, Serialize)]
-pub struct CheckReport {
+pub struct CheckReport<C: Serialize> {
     pub program: &'static str,
     pub map: String,
     pub notes: Vec<String>,
     #[serde(serialize_with = "snake_keys")]
-    pub certificate: Certificate,
+    pub certificate: C,
     pub certificate_seconds: f64,
 }
 

@@ -60,6 +60,14 @@ pub fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
     Ok(nodes.positions)
 }
 
+/// Does this file hold tetrahedra?
+pub fn is_solid(path: &Path) -> bool {
+    match beside(path, "node") {
+        Some(_) => true,
+        None => format(path).is_ok_and(|f| f.holds_solids()) && read_solid(path).is_ok(),
+    }
+}
+
 /// Fails when [`write_deformed`] would not know the name: said before the work rather than after.
 pub fn check_format(path: &Path) -> Result<(), Failure> {
     match beside(path, "node") {

@@ -1,5 +1,4 @@
-//! The one predicate everything rests on: on which side of a line is a point? Exact for every
-//! finite input.
+//! On which side of a line is a point?
 //!
 //! `robust::orient2d` (Shewchuk's adaptive predicate) is exact as long as no product inside it
 //! overflows or falls below the smallest normal number. Coordinates that are zero or between
@@ -8,6 +7,7 @@
 //! sane map. (Scaling by a power of two would not do: the doubles of one triangle can span 2098
 //! binary orders of magnitude.)
 
+use super::wide::WideSum;
 use glam::DVec2;
 use std::cmp::Ordering;
 
@@ -38,7 +38,7 @@ pub fn orientation(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
 }
 
 /// Lexicographic order of points: by x, then by y.
-pub(super) fn compare_points(a: DVec2, b: DVec2) -> Ordering {
+pub fn compare_points(a: DVec2, b: DVec2) -> Ordering {
     let by = |p: f64, q: f64| p.partial_cmp(&q).unwrap_or(Ordering::Equal);
     by(a.x, b.x).then(by(a.y, b.y))
 }
@@ -49,57 +49,18 @@ const WORDS: usize = 70;
 /// The determinant as the difference of two sums of exact products:
 /// (aₓb_y + bₓc_y + cₓa_y) − (a_y bₓ + b_y cₓ + c_y aₓ).
 fn orientation_by_integers(a: DVec2, b: DVec2, c: DVec2) -> Ordering {
-    let mut sums = [[0u64; WORDS]; 2];
-    let terms = [
+    let mut sum = WideSum::<WORDS>::ZERO;
+    for (p, q, subtract) in [
         (a.x, b.y, false),
         (b.x, c.y, false),
         (c.x, a.y, false),
         (a.y, b.x, true),
         (b.y, c.x, true),
         (c.y, a.x, true),
-    ];
-    for (p, q, subtract) in terms {
-        let negative = (p.is_sign_negative() != q.is_sign_negative()) != subtract;
-        add_product(&mut sums[usize::from(negative)], p, q);
+    ] {
+        sum.add([p, q], subtract);
     }
-    sums[0].iter().rev().cmp(sums[1].iter().rev())
-}
-
-/// |x| = mantissa · 2^(exponent − 1074).
-fn decompose(x: f64) -> (u64, usize) {
-    let bits = x.to_bits() & !(1 << 63);
-    let exponent = (bits >> 52) as usize;
-    let fraction = bits & ((1 << 52) - 1);
-    match exponent {
-        0 => (fraction, 0),
-        e => (fraction | 1 << 52, e - 1),
-    }
-}
-
-/// Adds |p·q| in units of 2⁻²¹⁴⁸.
-fn add_product(sum: &mut [u64; WORDS], p: f64, q: f64) {
-    let ((m, e), (n, f)) = (decompose(p), decompose(q));
-    let product = u128::from(m) * u128::from(n);
-    let (word, shift) = ((e + f) / 64, (e + f) % 64);
-    let low = product << shift;
-    let high = if shift == 0 {
-        0
-    } else {
-        product >> (128 - shift)
-    };
-    let mut carry = 0u64;
-    for (i, slot) in sum[word..].iter_mut().enumerate() {
-        let addend = match i {
-            0 => low as u64,
-            1 => (low >> 64) as u64,
-            2 => high as u64,
-            _ if carry == 0 => break,
-            _ => 0,
-        };
-        let total = u128::from(*slot) + u128::from(addend) + u128::from(carry);
-        *slot = total as u64;
-        carry = (total >> 64) as u64;
-    }
+    sum.sign()
 }
 
 #[cfg(test)]
