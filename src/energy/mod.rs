@@ -1,11 +1,13 @@
 //! Deformation energies as functions of the singular values: one file an energy.
 
 mod arap;
+mod limited_arap;
 mod neo_hookean;
 mod symmetric_dirichlet;
 pub mod total;
 
 pub use arap::Arap;
+pub use limited_arap::LimitedArap;
 pub use neo_hookean::NeoHookean;
 pub use symmetric_dirichlet::SymmetricDirichlet;
 
