@@ -390,6 +390,7 @@ fn kernels_agree_with_the_plain_evaluation() {
         rest: &rest,
         start: &x,
         pins: &pins,
+        external: None,
     };
     let options = WrapdOptions::default();
     let solvers = [
@@ -421,6 +422,7 @@ fn a_crumpled_sheet_goes_back_to_its_rest_shape() {
         rest: &rest,
         start: &start,
         pins: &held,
+        external: None,
     };
     let options = WrapdOptions {
         tolerance: 1e-14,
