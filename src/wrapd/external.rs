@@ -7,7 +7,7 @@ use crate::optim::{BuildError, Spring};
 use crate::parallel;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
-/// ½ tr(XᵀBX) − tr(LᵀX) + Σ k/2 ‖x_v − t‖², added to the raw energy Σ A ψ. X is n×d.
+/// ½ tr(XᵀBX) − tr(LᵀX) + c + Σ k/2 ‖x_v − t‖², added to the raw energy Σ A ψ. X is n×d.
 #[derive(Debug, Clone, Default)]
 pub struct External {
     /// B, symmetric and positive semidefinite, as a sum of entries (vertex, vertex, value): a pair of
@@ -15,6 +15,8 @@ pub struct External {
     pub stiffness: Vec<(u32, u32, f64)>,
     /// L, n×d interleaved: a constant force on each vertex. Empty: none.
     pub load: Vec<f64>,
+    /// c: where the load's energy is to be zero.
+    pub constant: f64,
     /// The springs at the start; they can be replaced while the solver runs.
     pub springs: Vec<Spring>,
 }
@@ -38,6 +40,9 @@ impl External {
         if let Some(bad) = self.load.iter().position(|x| !x.is_finite()) {
             let what = format!("vertex {} has a force that is not finite", bad / dimension);
             return wrong("external.load", what);
+        }
+        if !self.constant.is_finite() {
+            return wrong("external.constant", "must be finite".into());
         }
         let outside = |&v: &u32| v as usize >= n;
         for &(a, b, value) in &self.stiffness {
@@ -68,12 +73,13 @@ pub struct Terms {
     /// B with all slots, pinned ones too.
     matrix: Option<CsrMatrix<f64>>,
     load: Vec<f64>,
+    constant: f64,
     springs: Vec<Spring>,
     /// Sum of the springs' stiffnesses on each free slot.
     pub spring_stiffness: Vec<f64>,
     /// BX − L and the springs' pull, by slot.
     pub gradient: Vec<f64>,
-    /// ½ tr(XᵀBX) − tr(LᵀX) + the springs' energy.
+    /// ½ tr(XᵀBX) − tr(LᵀX) + c + the springs' energy.
     pub energy: f64,
     sums: Vec<f64>,
 }
@@ -102,6 +108,7 @@ impl Terms {
             dimension,
             matrix,
             load,
+            constant: external.constant,
             springs: Vec::new(),
             spring_stiffness: vec![0.0; free],
             gradient: vec![0.0; n * dimension],
@@ -158,7 +165,7 @@ impl Terms {
                 }
             },
         );
-        self.energy = self.sums.iter().sum();
+        self.energy = self.constant + self.sums.iter().sum::<f64>();
         for spring in &self.springs {
             let at = spring.vertex as usize * d;
             for i in 0..d {
