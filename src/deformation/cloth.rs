@@ -122,7 +122,6 @@ impl Deformation {
         let n = start.len();
         let weight = DVec3::from_array(options.gravity) * options.density;
         let shares = vertex_measures(&shape, n);
-        let total: f64 = shares.iter().sum();
         let points = pins.iter().map(|&v| start[v as usize]);
         let points = points.chain(targets.iter().map(|t| t.position));
         let count = (pins.len() + targets.len()).max(1);
@@ -143,7 +142,7 @@ impl Deformation {
                     .iter()
                     .flat_map(|&share| (weight * share).to_array())
                     .collect(),
-                constant: total * weight.dot(level),
+                origin: level.to_array(),
                 springs: Vec::new(),
             },
             method: options.method,

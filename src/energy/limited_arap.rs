@@ -52,6 +52,9 @@ impl LimitedArap {
 impl<S: Space> Energy<S> for LimitedArap {
     const BARRIER: bool = false;
 
+    fn limits(&self) -> [f64; 2] {
+        [self.least, self.most]
+    }
     fn constants(&self) -> Constants {
         Constants {
             rest_stiffness: self.stiffness,
