@@ -1,9 +1,13 @@
-//! Quasi-static deformation of elastic solids: the minimum of an energy under pins (paper §6.1).
+//! Quasi-static deformation of elastic solids and of cloth: the minimum of an energy under pins (paper §6.1).
 
+mod body;
+mod cloth;
 mod options;
 mod problem;
 mod supports;
 
+pub use cloth::ClothOptions;
 pub use options::{DeformationMethod, DeformationOptions, Material};
-pub use problem::{Deformation, Target};
+pub use problem::Deformation;
 pub(crate) use supports::Supports;
+pub use supports::Target;

@@ -1,7 +1,17 @@
 //! What holds a body in place: pins and targets, for every component.
 
 use crate::mesh::{SimplicialMesh, counted};
-use crate::optim::BuildError;
+use crate::optim::{BuildError, Spring};
+use glam::DVec3;
+
+/// Where a vertex is wanted. A pinned vertex is moved there, a free one pulled by a spring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The vertex.
+    pub vertex: u32,
+    /// Where to, in the units of the mesh.
+    pub position: DVec3,
+}
 
 /// The held vertices and the components of a mesh.
 #[derive(Debug, Clone)]
@@ -93,6 +103,43 @@ impl Supports {
             ),
             None => Ok(()),
         }
+    }
+
+    /// Targets as moves of held vertices and springs on free ones.
+    #[allow(clippy::type_complexity)]
+    pub fn split(
+        &self,
+        targets: &[Target],
+        stiffness: &[f64],
+    ) -> Result<(Vec<(u32, [f64; 3])>, Vec<Spring>), BuildError> {
+        let n = self.is_held.len();
+        let wrong = |what| wrong("targets", what);
+        let (mut moved, mut springs) = (Vec::new(), Vec::new());
+        let mut has_target = vec![false; n];
+        for &Target { vertex, position } in targets {
+            let v = vertex as usize;
+            if v >= n {
+                return wrong(format!("vertex {v} of {n} (the first is 0)"));
+            }
+            if !position.is_finite() {
+                return wrong(format!("the target of vertex {v} is not finite"));
+            }
+            if has_target[v] {
+                return wrong(format!("vertex {v} has two targets"));
+            }
+            has_target[v] = true;
+            let target = position.to_array();
+            match self.is_held[v] {
+                true => moved.push((vertex, target)),
+                false => springs.push(Spring {
+                    vertex,
+                    stiffness: stiffness[v],
+                    target,
+                }),
+            }
+        }
+        self.check(targets.iter().map(|t| t.vertex))?;
+        Ok((moved, springs))
     }
 }
 

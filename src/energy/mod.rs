@@ -1,11 +1,13 @@
 //! Deformation energies as functions of the singular values: one file an energy.
 
 mod arap;
+mod limited_arap;
 mod neo_hookean;
 mod symmetric_dirichlet;
 pub mod total;
 
 pub use arap::Arap;
+pub use limited_arap::LimitedArap;
 pub use neo_hookean::NeoHookean;
 pub use symmetric_dirichlet::SymmetricDirichlet;
 
@@ -24,6 +26,11 @@ pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
     fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, warm: S::Sigma<L>) -> (S::Sigma<L>, u32);
     /// Does the energy need all σ > 0 (a barrier against inversion)?
     const BARRIER: bool;
+    /// Least and most singular value: outside, the energy is infinite, though `density` is not. An
+    /// iterate that breaks these limits has not converged.
+    fn limits(&self) -> [f64; 2] {
+        [f64::NEG_INFINITY, f64::INFINITY]
+    }
     /// What belongs to the energy as a whole.
     fn constants(&self) -> Constants;
 }

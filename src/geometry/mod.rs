@@ -1,9 +1,11 @@
-//! Rest shapes, deformation gradients and Laplacians.
+//! Rest shapes, deformation gradients, Laplacians and bending.
 
+mod bending;
 mod elimination;
 mod laplacian;
 mod rest;
 
+pub use bending::{quadratic_bending, vertex_measures};
 pub use elimination::Elimination;
 pub use laplacian::{cotangent_weights, uniform_weights};
 pub use rest::{RestShape, surface_area, triangle_rest};

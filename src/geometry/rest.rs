@@ -46,6 +46,19 @@ impl RestShape {
     /// `DegenerateElement` names the first triangle of area below 1e-14 (for a surface scaled to unit
     /// area that is a relative bound; the paper's code has the same) or not finite.
     pub fn of_surface(mesh: &SurfaceMesh, scale: f64) -> Result<Self, BuildError> {
+        Self::of_triangles(mesh, scale, 1e-14)
+    }
+
+    /// Rest shapes of the triangles of a surface as it is.
+    ///
+    /// # Errors
+    /// `DegenerateElement` names the first triangle whose area is below 1e-14 of the mean.
+    pub fn of_sheet(mesh: &SurfaceMesh) -> Result<Self, BuildError> {
+        let mean = surface_area(mesh) / mesh.simplices.len().max(1) as f64;
+        Self::of_triangles(mesh, 1.0, 1e-14 * mean)
+    }
+
+    fn of_triangles(mesh: &SurfaceMesh, scale: f64, least: f64) -> Result<Self, BuildError> {
         let mut rest = RestShape {
             stretches: 2,
             vertices: mesh.simplices.iter().flatten().copied().collect(),
@@ -55,7 +68,7 @@ impl RestShape {
         for (index, &[a, b, c]) in mesh.simplices.iter().enumerate() {
             let [a, b, c] = [a, b, c].map(|v| mesh.positions[v as usize] * scale);
             let ([l, x, y], measure) = triangle_rest(a, b, c);
-            if !(measure >= 1e-14 && measure.is_finite()) {
+            if !(measure > 0.0 && measure >= least && measure.is_finite()) {
                 return Err(BuildError::DegenerateElement { index, measure });
             }
             rest.inverse

@@ -1,15 +1,17 @@
 //! Dimension as a type: what a deformation gradient, its stretch and its singular values are.
 //!
-//! [`Plane`] maps triangles to the plane, [`Solid`] tetrahedra to space. `Sheet` (triangles in space)
-//! joins by implementing [`Space`]; no solver knows more of dimension than this trait.
+//! [`Plane`] maps triangles to the plane, [`Solid`] tetrahedra to space, [`Sheet`] triangles to space. No
+//! solver knows more of dimension than the trait [`Space`].
 
 mod lane;
 mod plane;
+mod sheet;
 mod solid;
 mod three;
 
 pub use lane::{Lane, Pack, Scalar, dispatch};
 pub use plane::Plane;
+pub use sheet::Sheet;
 pub use solid::Solid;
 
 /// A fixed number of components, one register each.
@@ -62,7 +64,7 @@ impl<T: Copy, const N: usize> Components<T> for [T; N] {
 ///
 /// The deformation gradient F is d×k, stored column by column; its polar decomposition is F = R S
 /// with R orthonormal and *proper* where d = k, so that S carries the reflection of an inverted
-/// element in its last singular value.
+/// element in its last singular value. Where d > k all singular values are ≥ 0.
 pub trait Space: Copy + Send + Sync + 'static {
     /// d, the dimension of the positions.
     const DIM: usize;

@@ -18,7 +18,7 @@ use super::{Components, Lane, Space};
 pub struct Plane;
 
 /// Below this modulus (absolute; far below any meaningful stretch) a direction is not defined.
-const TINY: f64 = 1e-150;
+pub(super) const TINY: f64 = 1e-150;
 
 /// Modulus, its inverse and the direction of the complex number (re, im); the direction of 0 is (1, 0),
 /// its inverse modulus 0.

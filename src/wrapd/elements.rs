@@ -27,6 +27,8 @@ pub struct Shape {
     pub linear: bool,
     /// Is the energy infinite where an element is inverted?
     pub barrier: bool,
+    /// Least and most σ that an iterate may have and have converged.
+    pub limits: [f64; 2],
     /// Numbers of the energy.
     pub constants: Constants,
 }
@@ -42,6 +44,7 @@ impl Shape {
             kappa: S::KAPPA,
             linear: C::LINEAR,
             barrier: E::BARRIER,
+            limits: energy.limits(),
             constants: energy.constants(),
         }
     }

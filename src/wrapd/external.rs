@@ -7,7 +7,8 @@ use crate::optim::{BuildError, Spring};
 use crate::parallel;
 use nalgebra_sparse::{CooMatrix, CsrMatrix};
 
-/// ½ tr(XᵀBX) − tr(LᵀX) + Σ k/2 ‖x_v − t‖², added to the raw energy Σ A ψ. X is n×d.
+/// ½ tr(XᵀBX) − tr(LᵀX) + Σ k/2 ‖x_v − t‖², added to the raw energy Σ A ψ. X is n×d, in the first two terms
+/// relative to `origin`.
 #[derive(Debug, Clone, Default)]
 pub struct External {
     /// B, symmetric and positive semidefinite, as a sum of entries (vertex, vertex, value): a pair of
@@ -15,6 +16,9 @@ pub struct External {
     pub stiffness: Vec<(u32, u32, f64)>,
     /// L, n×d interleaved: a constant force on each vertex. Empty: none.
     pub load: Vec<f64>,
+    /// Where the load's energy is zero; near the body, so that B, if it does not care for translations,
+    /// meets small numbers. The first `dimension` coordinates count.
+    pub origin: [f64; 3],
     /// The springs at the start; they can be replaced while the solver runs.
     pub springs: Vec<Spring>,
 }
@@ -38,6 +42,9 @@ impl External {
         if let Some(bad) = self.load.iter().position(|x| !x.is_finite()) {
             let what = format!("vertex {} has a force that is not finite", bad / dimension);
             return wrong("external.load", what);
+        }
+        if !self.origin.iter().all(|x| x.is_finite()) {
+            return wrong("external.origin", "must be finite".into());
         }
         let outside = |&v: &u32| v as usize >= n;
         for &(a, b, value) in &self.stiffness {
@@ -68,6 +75,7 @@ pub struct Terms {
     /// B with all slots, pinned ones too.
     matrix: Option<CsrMatrix<f64>>,
     load: Vec<f64>,
+    origin: [f64; 3],
     springs: Vec<Spring>,
     /// Sum of the springs' stiffnesses on each free slot.
     pub spring_stiffness: Vec<f64>,
@@ -75,13 +83,24 @@ pub struct Terms {
     pub gradient: Vec<f64>,
     /// ½ tr(XᵀBX) − tr(LᵀX) + the springs' energy.
     pub energy: f64,
+    /// The rounding error of the energy, about: that of tr(XᵀBX), from the positions at the start.
+    pub rounding: f64,
     sums: Vec<f64>,
 }
 
 impl Terms {
-    /// Of a problem whose vertices have these slots, `free` of them free.
-    pub fn new(external: &External, slot: &[u32], free: usize, dimension: usize) -> Self {
+    /// Of a problem with this start, whose vertices have these slots, `free` of them free.
+    pub fn new(external: &External, start: &[f64], slot: &[u32], free: usize) -> Self {
         let n = slot.len();
+        let dimension = start.len() / n;
+        let size = |v: u32| {
+            let position = &start[v as usize * dimension..][..dimension];
+            let relative = position.iter().zip(&external.origin).map(|(x, o)| x - o);
+            relative.map(|x| x * x).sum::<f64>().sqrt()
+        };
+        let entries = external.stiffness.iter();
+        let products = entries.map(|&(a, b, value)| value.abs() * size(a) * size(b));
+        let rounding = f64::EPSILON * products.sum::<f64>();
         let matrix = (!external.stiffness.is_empty()).then(|| {
             let mut entries = CooMatrix::new(n, n);
             for &(a, b, value) in &external.stiffness {
@@ -102,10 +121,12 @@ impl Terms {
             dimension,
             matrix,
             load,
+            origin: external.origin,
             springs: Vec::new(),
             spring_stiffness: vec![0.0; free],
             gradient: vec![0.0; n * dimension],
             energy: 0.0,
+            rounding,
             sums: vec![0.0; n.div_ceil(SLOTS)],
         };
         this.set_springs(&external.springs, slot);
@@ -132,7 +153,7 @@ impl Terms {
     /// Evaluates at these positions, by slot.
     pub fn evaluate(&mut self, x: &[f64]) {
         let d = self.dimension;
-        let (matrix, load) = (&self.matrix, &self.load);
+        let (matrix, load, origin) = (&self.matrix, &self.load, &self.origin);
         parallel::for_each_block(
             &mut self.sums,
             &mut self.gradient,
@@ -145,14 +166,16 @@ impl Terms {
                     if let Some(matrix) = matrix {
                         let row = matrix.row(row);
                         for (&column, value) in row.col_indices().iter().zip(row.values()) {
-                            for (g, x) in g.iter_mut().zip(&x[column * d..]) {
-                                *g += value * x;
+                            let x = x[column * d..].iter().zip(origin);
+                            for (g, (x, o)) in g.iter_mut().zip(x) {
+                                *g += value * (x - o);
                             }
                         }
                     }
                     let at = row * d..(row + 1) * d;
-                    for ((g, x), l) in g.iter_mut().zip(&x[at.clone()]).zip(&load[at]) {
-                        *sum += (0.5 * *g - l) * x;
+                    let x = x[at.clone()].iter().zip(origin);
+                    for ((g, (x, o)), l) in g.iter_mut().zip(x).zip(&load[at]) {
+                        *sum += (0.5 * *g - l) * (x - o);
                         *g -= l;
                     }
                 }

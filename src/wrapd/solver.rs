@@ -23,6 +23,9 @@ use crate::space::Space;
 /// Vertices that are gathered as one piece of work.
 const VERTICES: usize = 1024;
 
+/// By how much singular values may miss hard limits at convergence.
+const LIMIT_SLACK: f64 = 1e-6;
+
 /// ADMM on a splitting of F: WRAPD and its relatives, by coupling and energy.
 pub struct Wrapd {
     options: WrapdOptions,
@@ -100,7 +103,7 @@ impl Wrapd {
             // springs may come to any vertex
             let free = 0..elimination.free as u32;
             contributions.extend(free.map(|s| (s, s, constant + 1 + s, 1.0)));
-            Terms::new(external, &elimination.slot, elimination.free, dimension)
+            Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
         let mut matrix = WeightedSum::new(elimination.free, &contributions);
         fill(&mut matrix, rest.len(), terms.as_ref(), |_| {
@@ -420,9 +423,15 @@ impl Wrapd {
         self.report.iteration = k + 1;
         self.report.lbfgs_iterations = if self.shape.linear { 0 } else { count };
         self.report.reweighted = reweighted;
+        let [least, most] = self.shape.limits;
+        let kept = self.report.smallest_sigma >= least - LIMIT_SLACK
+            && self.report.largest_sigma <= most + LIMIT_SLACK;
+        // a change that is no more than the rounding error of the terms says nothing
+        let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
+        let floor = self.shape.constants.floor + rounding / self.options.tolerance.max(1e-300);
         self.report.settle(
-            (before, self.shape.constants.floor),
-            injective && self.was_injective,
+            (before, floor),
+            injective && self.was_injective && kept,
             self.options.tolerance,
             self.options.max_iterations,
         );

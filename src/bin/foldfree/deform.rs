@@ -110,7 +110,9 @@ pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
             last.energy,
             last.inverted,
         ));
-        say(&certificate.summary());
+        if let Some(certificate) = &certificate {
+            say(&certificate.summary());
+        }
         if let Some(error) = iterations.last().and_then(|i| i.position_error) {
             say(&format!("position error against the reference: {error:e}"));
         }

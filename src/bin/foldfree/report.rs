@@ -113,7 +113,7 @@ pub struct DeformReport {
     pub seconds: f64,
     pub iterations: Vec<Iteration>,
     #[serde(serialize_with = "snake_keys")]
-    pub certificate: SolidCertificate,
+    pub certificate: Option<SolidCertificate>,
     pub certificate_seconds: f64,
 }
 

@@ -3,10 +3,7 @@
 use super::{MeshError, NONE, next, previous};
 
 /// Checks that there are faces and that each has three different, existing vertices.
-pub(in crate::mesh) fn check_simplices(
-    simplices: &[[u32; 3]],
-    vertices: usize,
-) -> Result<(), MeshError> {
+pub(crate) fn check_simplices(simplices: &[[u32; 3]], vertices: usize) -> Result<(), MeshError> {
     if simplices.is_empty() {
         return Err(MeshError::Empty);
     }
@@ -30,10 +27,7 @@ pub(in crate::mesh) fn check_simplices(
 
 /// The opposite of each corner, whatever the orientations; edges of three faces or more and duplicate
 /// faces are errors.
-pub(in crate::mesh) fn opposites(
-    simplices: &[[u32; 3]],
-    vertices: usize,
-) -> Result<Vec<u32>, MeshError> {
+pub(crate) fn opposites(simplices: &[[u32; 3]], vertices: usize) -> Result<Vec<u32>, MeshError> {
     let corners = simplices.as_flattened();
     let edge = |corner: u32| {
         let (a, b) = (

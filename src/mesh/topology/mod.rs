@@ -7,7 +7,7 @@
 mod adjacency;
 mod orient;
 
-pub(super) use adjacency::{check_simplices, opposites};
+pub(crate) use adjacency::{check_simplices, opposites};
 pub(super) use orient::orient;
 
 use super::{MeshError, SurfaceMesh};

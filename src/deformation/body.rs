@@ -1,0 +1,144 @@
+//! A body of any kind, checked, and on its way to a solver.
+
+use super::{Deformation, DeformationMethod, Supports, Target};
+use crate::Error;
+use crate::energy::Energy;
+use crate::geometry::RestShape;
+use crate::mesh::{MeshError, SimplicialMesh};
+use crate::optim::{BuildError, Stopwatch};
+use crate::space::Space;
+use crate::wrapd::{External, Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
+use glam::DVec3;
+
+/// Checks that indices are in range, positions finite, and that the start has one a vertex.
+pub fn check<const K: usize>(rest: &SimplicialMesh<K>, start: &[DVec3]) -> Result<(), Error> {
+    let vertices = rest.positions.len();
+    if rest.simplices.is_empty() {
+        return Err(MeshError::Empty.into());
+    }
+    if let Some(vertex) = rest.positions.iter().position(|p| !p.is_finite()) {
+        return Err(MeshError::NonFinitePosition { vertex }.into());
+    }
+    for (face, simplex) in rest.simplices.iter().enumerate() {
+        if let Some(&index) = simplex.iter().find(|&&v| v as usize >= vertices) {
+            let index = u64::from(index);
+            return Err(MeshError::IndexOutOfRange {
+                face,
+                index,
+                vertices,
+            }
+            .into());
+        }
+    }
+    if start.len() != vertices {
+        return Err(BuildError::WrongLength {
+            argument: "start",
+            expected: vertices,
+            found: start.len(),
+        }
+        .into());
+    }
+    match start.iter().position(|p| !p.is_finite()) {
+        Some(vertex) => Err(MeshError::NonFinitePosition { vertex }.into()),
+        None => Ok(()),
+    }
+}
+
+/// A body, what holds it, and how it is to be solved.
+pub struct Body<'a> {
+    /// Rest shapes.
+    pub shape: &'a RestShape,
+    /// One position a vertex.
+    pub start: &'a [DVec3],
+    /// What holds it.
+    pub supports: Supports,
+    /// Where vertices are wanted.
+    pub targets: &'a [Target],
+    /// How hard targets pull, see [`super::DeformationOptions`].
+    pub target_stiffness: f64,
+    /// Terms beside the elements, springs not among them.
+    pub external: External,
+    /// The solver.
+    pub method: DeformationMethod,
+    /// When to stop.
+    pub tolerance: f64,
+    /// When to stop in any case.
+    pub max_iterations: usize,
+    /// What was mended.
+    pub notes: Vec<String>,
+    /// Started with the work.
+    pub clock: Stopwatch,
+}
+
+impl Body<'_> {
+    /// The solver for an energy.
+    pub fn solver<S: Space, E: Energy<S>>(self, energy: E) -> Result<Deformation, Error> {
+        use DeformationMethod::{AdmmPd, RAdmm, WAdmm, Wrapd as Both};
+        let method = self.method;
+        self.build(
+            energy.constants().rest_stiffness,
+            |problem, settings| match method {
+                Both | RAdmm => Wrapd::new::<S, RotationAware, E>(problem, energy, settings),
+                WAdmm | AdmmPd => Wrapd::new::<S, Linear, E>(problem, energy, settings),
+            },
+        )
+    }
+
+    /// What does not depend on the energy's type.
+    fn build(
+        mut self,
+        rest_stiffness: f64,
+        new: impl Fn(Problem, WrapdOptions) -> Result<Wrapd, BuildError>,
+    ) -> Result<Deformation, Error> {
+        let spring_stiffness = self.spring_stiffness(rest_stiffness);
+        let mut positions = self.start.to_vec();
+        let (moved, springs) = self.supports.split(self.targets, &spring_stiffness)?;
+        for (vertex, point) in moved {
+            positions[vertex as usize] = DVec3::from_array(point);
+        }
+        let positions: Vec<f64> = positions.iter().flat_map(|p| p.to_array()).collect();
+        self.external.springs = springs;
+        let problem = Problem {
+            rest: self.shape,
+            start: &positions,
+            pins: &self.supports.held(),
+            external: Some(&self.external),
+        };
+        let reweighted = matches!(
+            self.method,
+            DeformationMethod::Wrapd | DeformationMethod::WAdmm
+        );
+        let settings = WrapdOptions {
+            reweighting: reweighted.then_some(Reweighting::QUASI_STATIC),
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations,
+            restart_duals: true,
+            ..Default::default()
+        };
+        let solver = Box::new(new(problem, settings)?);
+        Ok(Deformation {
+            rest: None,
+            notes: self.notes,
+            setup_seconds: self.clock.seconds(),
+            supports: self.supports,
+            spring_stiffness,
+            solver,
+        })
+    }
+
+    /// The stiffness of a target's spring at each vertex: in proportion to the diagonal of the body's
+    /// stiffness matrix at rest.
+    fn spring_stiffness(&self, rest_stiffness: f64) -> Vec<f64> {
+        let shape = self.shape;
+        let mut stiffness = vec![0.0; self.start.len()];
+        for e in 0..shape.len() {
+            for (corner, &v) in shape.simplex(e).iter().enumerate() {
+                stiffness[v as usize] += self.target_stiffness
+                    * rest_stiffness
+                    * shape.measure[e]
+                    * shape.hat_product(e, corner, corner);
+            }
+        }
+        stiffness
+    }
+}
