@@ -30,8 +30,9 @@ pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
     fn hessian(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3];
     /// K_e(σ), the largest eigenvalue of ∂²ψ/∂σ² (20).
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L;
-    /// argmin_z ψ(z) + k/2 ‖z − p‖² (6), to rounding, and how many inner iterations it took.
-    /// `warm` is where to begin (entries > 0).
+    /// argmin_z ψ(z) + k/2 ‖z − p‖² (6), to rounding, and how many inner iterations it took. Where
+    /// that has several minima it may be one that is not the lowest. `warm` is where to begin (entries
+    /// > 0, but for the last of an energy without barrier).
     fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, warm: S::Sigma<L>) -> (S::Sigma<L>, u32);
     /// Does the energy need all σ > 0 (a barrier against inversion)?
     const BARRIER: bool;

@@ -7,7 +7,7 @@
 //! μ I + f'' g gᵀ + f' ∇²J, where (∇²J)ᵢⱼ is the third σ.
 
 use super::moduli::lame;
-use super::newton::{self, Expansion};
+use super::newton::{self, Expansion, Signs};
 use super::{Constants, Energy};
 use crate::optim::BuildError;
 use crate::space::{Lane, Solid, Space};
@@ -123,14 +123,13 @@ impl Energy<Solid> for NeoHookean {
         Solid::eigen(self.expansion(s).2).0[0]
     }
 
-    /// With two negative stretches J would be positive again: only the last may change its sign.
     #[inline(always)]
     fn prox<L: Lane>(&self, p: [L; 3], k: L, warm: [L; 3]) -> ([L; 3], u32) {
         newton::prox(
             p,
             k,
             warm,
-            2,
+            Signs::Signed,
             #[inline(always)]
             |s| self.expansion(s),
         )

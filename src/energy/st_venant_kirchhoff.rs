@@ -16,7 +16,7 @@
 //! the signs ends at the global minimum.
 
 use super::moduli::{lame, uniaxial_stiffness};
-use super::newton::{self, Expansion};
+use super::newton::{self, Expansion, Signs};
 use super::{Constants, Energy};
 use crate::optim::BuildError;
 use crate::space::{Lane, Solid, Space};
@@ -122,7 +122,7 @@ impl Energy<Solid> for StVenantKirchhoff {
             target,
             k,
             begin,
-            3,
+            Signs::Positive,
             #[inline(always)]
             |s| self.expansion(s),
         );

@@ -11,7 +11,7 @@
 //! μ = 4/3 μ_Lamé and λ = λ_Lamé + 5/6 μ_Lamé. Since λ_Lamé > −2/3 μ_Lamé, λ is positive.
 
 use super::moduli::{lame, uniaxial_stiffness};
-use super::newton::{self, Expansion};
+use super::newton::{self, Expansion, Signs};
 use super::{Constants, Energy};
 use crate::optim::BuildError;
 use crate::space::{Lane, Solid, Space};
@@ -113,14 +113,13 @@ impl Energy<Solid> for StableNeoHookean {
         Solid::eigen(self.expansion(s).2).0[0]
     }
 
-    /// With two negative stretches J would be positive again: only the last may change its sign.
     #[inline(always)]
     fn prox<L: Lane>(&self, p: [L; 3], k: L, warm: [L; 3]) -> ([L; 3], u32) {
         newton::prox(
             p,
             k,
             warm,
-            2,
+            Signs::Signed,
             #[inline(always)]
             |s| self.expansion(s),
         )
