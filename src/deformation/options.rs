@@ -13,13 +13,29 @@ pub enum Material {
         /// Poisson's ratio, below 0.5.
         poisson: f64,
     },
+    /// Stable neo-Hookean elasticity (Smith, de Goes & Kim 2018).
+    StableNeoHookean {
+        /// As that of neo-Hookean.
+        young: f64,
+        /// As that of neo-Hookean.
+        poisson: f64,
+    },
+    /// St. Venant–Kirchhoff elasticity: for large turns and small strains.
+    StVenantKirchhoff {
+        /// As that of neo-Hookean.
+        young: f64,
+        /// As that of neo-Hookean.
+        poisson: f64,
+    },
     /// As rigid as possible.
     Arap,
     /// Symmetric Dirichlet: a barrier against inversion.
     SymmetricDirichlet,
+    /// Dirichlet: the harmonic map of the pins.
+    Dirichlet,
 }
 
-/// How the energy is minimised: the four curves of the paper's figure 4.
+/// How the energy is minimised: the four curves of the paper's figure 4, and one beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DeformationMethod {
@@ -31,6 +47,9 @@ pub enum DeformationMethod {
     WAdmm,
     /// Neither (Overby et al. 2017).
     AdmmPd,
+    /// L-BFGS that begins with the Laplacian (Liu, Bouaziz & Kavan 2017).
+    #[serde(rename = "l-bfgs")]
+    Lbfgs,
 }
 
 /// Options of [`super::Deformation`]. `Default` is the paper's choice for quasi-statics (§6.1, §7.1).

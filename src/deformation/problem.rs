@@ -2,10 +2,13 @@
 
 use super::{DeformationMethod, DeformationOptions, Material};
 use crate::Error;
-use crate::energy::{Arap, Energy, NeoHookean, SymmetricDirichlet};
+use crate::energy::{
+    Arap, Dirichlet, Energy, NeoHookean, StVenantKirchhoff, StableNeoHookean, SymmetricDirichlet,
+};
 use crate::geometry::RestShape;
 use crate::mesh::{MeshError, SolidMesh, counted};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
+use crate::quasi_newton::{QuasiNewton, QuasiNewtonOptions};
 use crate::space::Solid;
 use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec3;
@@ -60,8 +63,15 @@ impl Deformation {
             Material::NeoHookean { young, poisson } => {
                 build(problem, NeoHookean::new(young, poisson)?, options)
             }
+            Material::StableNeoHookean { young, poisson } => {
+                build(problem, StableNeoHookean::new(young, poisson)?, options)
+            }
+            Material::StVenantKirchhoff { young, poisson } => {
+                build(problem, StVenantKirchhoff::new(young, poisson)?, options)
+            }
             Material::Arap => build(problem, Arap, options),
             Material::SymmetricDirichlet => build(problem, SymmetricDirichlet, options),
+            Material::Dirichlet => build(problem, Dirichlet, options),
         }?;
         Ok(Self {
             notes,
@@ -188,7 +198,7 @@ fn build<E: Energy<Solid>>(
     energy: E,
     options: &DeformationOptions,
 ) -> Result<Box<dyn Solver>, BuildError> {
-    use DeformationMethod::{AdmmPd, RAdmm, WAdmm, Wrapd as Both};
+    use DeformationMethod::{AdmmPd, Lbfgs, RAdmm, WAdmm, Wrapd as Both};
     let reweighting = matches!(options.method, Both | WAdmm).then_some(Reweighting::QUASI_STATIC);
     let settings = WrapdOptions {
         reweighting,
@@ -199,6 +209,16 @@ fn build<E: Energy<Solid>>(
     };
     Ok(Box::new(match options.method {
         Both | RAdmm => Wrapd::new::<Solid, RotationAware, E>(problem, energy, settings)?,
+        Lbfgs => {
+            let settings = QuasiNewtonOptions {
+                tolerance: options.tolerance,
+                max_iterations: options.max_iterations,
+                ..Default::default()
+            };
+            return Ok(Box::new(QuasiNewton::new::<Solid, E>(
+                problem, energy, settings,
+            )?));
+        }
         WAdmm | AdmmPd => Wrapd::new::<Solid, Linear, E>(problem, energy, settings)?,
     }))
 }

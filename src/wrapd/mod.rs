@@ -9,11 +9,11 @@
 //! 2. global step (10a): L-BFGS on the positions, with H₀ = A⁻¹ (5a), until (17);
 //! 3. reweighting (23), refactorisation.
 
-mod block;
+pub(crate) mod block;
 mod coupling;
-mod elements;
-mod kernels;
-mod layout;
+pub(crate) mod elements;
+pub(crate) mod kernels;
+pub(crate) mod layout;
 mod options;
 mod problem;
 mod solver;

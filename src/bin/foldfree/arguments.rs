@@ -95,14 +95,14 @@ pub struct Deform {
     /// Elastic energy.
     #[arg(long, default_value = "neo-hookean", value_parser = PossibleValuesParser::new(MATERIALS))]
     pub energy: String,
-    /// Young's modulus (neo-hookean).
+    /// Young's modulus (neo-hookean, stable-neo-hookean, st-venant-kirchhoff).
     #[arg(long, value_name = "E", default_value_t = 1e7)]
     pub young: f64,
-    /// Poisson's ratio (neo-hookean).
+    /// Poisson's ratio (the same).
     #[arg(long, value_name = "N", default_value_t = 0.45)]
     pub poisson: f64,
     /// How.
-    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd"]))]
+    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs"]))]
     pub method: DeformationMethod,
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]
@@ -130,13 +130,14 @@ pub struct Deform {
 impl Deform {
     /// The library's options.
     pub fn options(&self) -> DeformationOptions {
+        let (young, poisson) = (self.young, self.poisson);
         let material = match self.energy.as_str() {
+            "stable-neo-hookean" => Material::StableNeoHookean { young, poisson },
+            "st-venant-kirchhoff" => Material::StVenantKirchhoff { young, poisson },
+            "dirichlet" => Material::Dirichlet,
             "arap" => Material::Arap,
             "symmetric-dirichlet" => Material::SymmetricDirichlet,
-            _ => Material::NeoHookean {
-                young: self.young,
-                poisson: self.poisson,
-            },
+            _ => Material::NeoHookean { young, poisson },
         };
         DeformationOptions {
             material,
@@ -184,7 +185,14 @@ pub struct Generate {
 const METHODS: &[&str] = &[
     "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
 ];
-const MATERIALS: [&str; 3] = ["neo-hookean", "arap", "symmetric-dirichlet"];
+const MATERIALS: [&str; 6] = [
+    "neo-hookean",
+    "stable-neo-hookean",
+    "st-venant-kirchhoff",
+    "arap",
+    "symmetric-dirichlet",
+    "dirichlet",
+];
 const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
 const STARTS: &[&str] = &[
     "automatic",
