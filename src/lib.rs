@@ -21,6 +21,7 @@ pub mod mesh;
 pub mod optim;
 mod parallel;
 pub mod parameterization;
+pub mod quasi_newton;
 pub mod space;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;

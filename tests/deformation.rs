@@ -1,5 +1,8 @@
 //! Quasi-static deformation: bars of tetrahedra, and the problems of the paper where they are.
 
+mod bar;
+
+use bar::{bar, twisted};
 use foldfree::deformation::{Deformation, DeformationMethod, DeformationOptions, Material};
 use foldfree::mesh::SolidMesh;
 use foldfree::mesh::io::{read_ele, read_node, write_ele, write_node};
@@ -7,24 +10,6 @@ use foldfree::optim::Status;
 use glam::{DMat3, DVec3};
 use std::io::Read;
 use std::path::Path;
-
-mod solid_bar;
-use solid_bar::bar;
-
-/// The bar twisted by `angle` along its length, and its two ends.
-fn twisted(mesh: &SolidMesh, angle: f64) -> (Vec<DVec3>, Vec<u32>) {
-    let length = mesh.positions.iter().fold(0.0f64, |a, p| a.max(p.x));
-    let start = mesh.positions.iter().map(|&p| {
-        let centre = DVec3::new(0.0, 0.5, 0.5);
-        DMat3::from_rotation_x(angle * p.x / length) * (p - centre) + centre
-    });
-    let end = |&v: &u32| {
-        let x = mesh.positions[v as usize].x;
-        x == 0.0 || x == length
-    };
-    let pins = (0..mesh.positions.len() as u32).filter(end).collect();
-    (start.collect(), pins)
-}
 
 fn solve(
     mesh: &SolidMesh,

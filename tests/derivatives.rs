@@ -1,81 +1,19 @@
 //! Every derivative the solvers use, against dual numbers (exact to rounding) and against central
 //! differences.
 
+mod dual;
 mod plane_oracle;
+mod random;
 
+use dual::{Dual, dual};
 use foldfree::embedding::tutte;
 use foldfree::energy::total::{deformation_gradient, spread, total};
 use foldfree::energy::{Arap, Energy, NeoHookean, SymmetricDirichlet};
 use foldfree::geometry::{RestShape, surface_area};
 use foldfree::mesh::{Shape, generate, prepare};
-use foldfree::space::{Lane, Plane, Scalar, Solid, Space};
-use num_dual::{DualNum, HyperDual64};
+use foldfree::space::{Lane, Plane, Solid, Space};
 use plane_oracle::{Matrix, full, matrix, stretch_residual};
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
-/// A number with two first derivatives and their mixed second derivative, as the crate's kernels
-/// compute with it.
-#[derive(Clone, Copy)]
-struct Dual(HyperDual64);
-
-macro_rules! operator {
-    ($trait:ident, $name:ident) => {
-        impl $trait for Dual {
-            type Output = Dual;
-            fn $name(self, other: Dual) -> Dual {
-                Dual($trait::$name(self.0, other.0))
-            }
-        }
-    };
-}
-operator!(Add, add);
-operator!(Sub, sub);
-operator!(Mul, mul);
-operator!(Div, div);
-
-impl Neg for Dual {
-    type Output = Dual;
-    fn neg(self) -> Dual {
-        Dual(-self.0)
-    }
-}
-
-impl Scalar for Dual {
-    fn lift(self, c: f64) -> Dual {
-        Dual(HyperDual64::from_re(c))
-    }
-}
-
-impl Lane for Dual {
-    type Mask = bool;
-    fn sqrt(self) -> Dual {
-        Dual(DualNum::sqrt(&self.0))
-    }
-    fn abs(self) -> Dual {
-        if self.0.re < 0.0 { -self } else { self }
-    }
-    fn min(self, other: Dual) -> Dual {
-        if self.lt(other) { self } else { other }
-    }
-    fn max(self, other: Dual) -> Dual {
-        if other.lt(self) { self } else { other }
-    }
-    fn lt(self, other: Dual) -> bool {
-        self.0.re < other.0.re
-    }
-    fn select(self, mask: bool, yes: Dual, no: Dual) -> Dual {
-        if mask { yes } else { no }
-    }
-    fn any(self, mask: bool) -> bool {
-        mask
-    }
-    fn mantissa_exponent(self) -> (Dual, Dual) {
-        unreachable!("only the logarithm asks for it")
-    }
-    fn ln(self) -> Dual {
-        Dual(DualNum::ln(&self.0))
-    }
-}
+use random::Random;
 
 /// Gradient and K_e of neo-Hookean elasticity, on either side of J = 0.1 and reflected.
 #[test]
@@ -102,30 +40,6 @@ fn neo_hookean_in_the_singular_values() {
         let (values, _) = Solid::eigen::<f64>([a[0], b[1], c[2], a[1], a[2], b[2]]);
         let stiffness = Energy::<Solid>::effective_stiffness(&energy, s);
         close(stiffness, values[0], values[0].abs().max(1.0), 1e-12);
-    }
-}
-
-/// `values` as duals, of which entry i carries the first direction and entry j the second.
-fn dual<const N: usize>(values: [f64; N], i: usize, j: usize) -> [Dual; N] {
-    std::array::from_fn(|k| {
-        let one = |yes| f64::from(u8::from(yes));
-        Dual(HyperDual64::new(values[k], one(k == i), one(k == j), 0.0))
-    })
-}
-
-/// A small generator of pseudo-random numbers (SplitMix64), here in −1..1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn many<const N: usize>(&mut self) -> [f64; N] {
-        std::array::from_fn(|_| self.next())
     }
 }
 

@@ -4,8 +4,8 @@ use foldfree::certificate::SolidCertificate;
 use foldfree::mesh::SolidMesh;
 use glam::{DMat3, DVec3, Vec3Swizzles};
 
-mod solid_bar;
-use solid_bar::bar;
+mod bar;
+use bar::bar;
 
 /// `n` vertices around the edge (0, 1), which is vertical, `turns` turns of it in all; a closed ring of n
 /// tetrahedra, or a fan of n − 1.

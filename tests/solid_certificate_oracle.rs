@@ -6,8 +6,8 @@ use foldfree::mesh::SolidMesh;
 use glam::DVec3;
 use proptest::prelude::*;
 
-mod solid_bar;
-use solid_bar::bar;
+mod bar;
+use bar::bar;
 
 type Point = [i64; 3];
 

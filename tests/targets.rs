@@ -1,11 +1,11 @@
 //! Handles: pins that move and springs that pull, also while the solver runs.
 
-use foldfree::deformation::{Deformation, DeformationOptions, Material, Target};
+use foldfree::deformation::{Deformation, DeformationMethod, DeformationOptions, Material, Target};
 use foldfree::optim::{Field, Status};
 use glam::{DMat3, DVec3};
 
-mod solid_bar;
-use solid_bar::bar;
+mod bar;
+use bar::bar;
 
 fn options() -> DeformationOptions {
     DeformationOptions {
@@ -66,6 +66,20 @@ fn springs_alone_carry_a_body_away_without_strain() {
 
 #[test]
 fn a_moved_pin_leads_where_a_fresh_start_does() {
+    for method in [
+        DeformationMethod::Wrapd,
+        DeformationMethod::AdmmPd,
+        DeformationMethod::Lbfgs,
+    ] {
+        moved_pin(method);
+    }
+}
+
+fn moved_pin(method: DeformationMethod) {
+    let options = DeformationOptions {
+        method,
+        ..options()
+    };
     let mesh = bar(5, 2);
     let (left, right) = (slab(&mesh.positions, 0.0), slab(&mesh.positions, 2.5));
     let pins: Vec<u32> = left.iter().chain(&right).copied().collect();
@@ -74,7 +88,7 @@ fn a_moved_pin_leads_where_a_fresh_start_does() {
         DMat3::from_rotation_x(0.8) * (p - centre) + centre + 0.3 * DVec3::X
     };
     let moved = targets(&mesh.positions, &right, motion);
-    let mut dragged = Deformation::new(&mesh, &mesh.positions, &pins, &options()).unwrap();
+    let mut dragged = Deformation::new(&mesh, &mesh.positions, &pins, &options).unwrap();
     run(&mut dragged);
     dragged.set_targets(&moved).unwrap();
     assert_eq!(dragged.solver().status(), Status::Running);
@@ -88,7 +102,7 @@ fn a_moved_pin_leads_where_a_fresh_start_does() {
     for target in &moved {
         start[target.vertex as usize] = target.position;
     }
-    let mut fresh = Deformation::new(&mesh, &start, &pins, &options()).unwrap();
+    let mut fresh = Deformation::new(&mesh, &start, &pins, &options).unwrap();
     run(&mut fresh);
     assert!(apart(&dragged.positions(), &fresh.positions()) < 1e-4);
     let [a, b] = [&dragged, &fresh].map(|d| d.solver().report().energy);

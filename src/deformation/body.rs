@@ -5,7 +5,8 @@ use crate::Error;
 use crate::energy::Energy;
 use crate::geometry::RestShape;
 use crate::mesh::{MeshError, SimplicialMesh};
-use crate::optim::{BuildError, Stopwatch};
+use crate::optim::{BuildError, Deformer, Stopwatch};
+use crate::quasi_newton::{QuasiNewton, QuasiNewtonOptions};
 use crate::space::Space;
 use crate::wrapd::{External, Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec3;
@@ -73,22 +74,39 @@ pub struct Body<'a> {
 impl Body<'_> {
     /// The solver for an energy.
     pub fn solver<S: Space, E: Energy<S>>(self, energy: E) -> Result<Deformation, Error> {
-        use DeformationMethod::{AdmmPd, RAdmm, WAdmm, Wrapd as Both};
-        let method = self.method;
-        self.build(
-            energy.constants().rest_stiffness,
-            |problem, settings| match method {
-                Both | RAdmm => Wrapd::new::<S, RotationAware, E>(problem, energy, settings),
-                WAdmm | AdmmPd => Wrapd::new::<S, Linear, E>(problem, energy, settings),
-            },
-        )
+        use DeformationMethod::{AdmmPd, Lbfgs, RAdmm, WAdmm, Wrapd as Both};
+        let (method, tolerance) = (self.method, self.tolerance);
+        let max_iterations = self.max_iterations;
+        self.build(energy.constants().rest_stiffness, |problem| {
+            let settings = WrapdOptions {
+                reweighting: matches!(method, Both | WAdmm).then_some(Reweighting::QUASI_STATIC),
+                tolerance,
+                max_iterations,
+                restart_duals: true,
+                ..Default::default()
+            };
+            Ok(match method {
+                Both | RAdmm => Box::new(Wrapd::new::<S, RotationAware, E>(
+                    problem, energy, settings,
+                )?),
+                WAdmm | AdmmPd => Box::new(Wrapd::new::<S, Linear, E>(problem, energy, settings)?),
+                Lbfgs => {
+                    let settings = QuasiNewtonOptions {
+                        tolerance,
+                        max_iterations,
+                        ..Default::default()
+                    };
+                    Box::new(QuasiNewton::new::<S, E>(problem, energy, settings)?)
+                }
+            })
+        })
     }
 
     /// What does not depend on the energy's type.
     fn build(
         mut self,
         rest_stiffness: f64,
-        new: impl Fn(Problem, WrapdOptions) -> Result<Wrapd, BuildError>,
+        new: impl Fn(Problem) -> Result<Box<dyn Deformer>, BuildError>,
     ) -> Result<Deformation, Error> {
         let spring_stiffness = self.spring_stiffness(rest_stiffness);
         let mut positions = self.start.to_vec();
@@ -104,18 +122,7 @@ impl Body<'_> {
             pins: &self.supports.held(),
             external: Some(&self.external),
         };
-        let reweighted = matches!(
-            self.method,
-            DeformationMethod::Wrapd | DeformationMethod::WAdmm
-        );
-        let settings = WrapdOptions {
-            reweighting: reweighted.then_some(Reweighting::QUASI_STATIC),
-            tolerance: self.tolerance,
-            max_iterations: self.max_iterations,
-            restart_duals: true,
-            ..Default::default()
-        };
-        let solver = Box::new(new(problem, settings)?);
+        let solver = new(problem)?;
         Ok(Deformation {
             rest: None,
             notes: self.notes,

@@ -84,6 +84,9 @@ impl ClothOptions {
         if !(self.target_stiffness > 0.0 && self.target_stiffness.is_finite()) {
             return wrong("targetStiffness", "must be finite and positive");
         }
+        if self.method == DeformationMethod::Lbfgs && self.limits.is_some() {
+            return wrong("method", "l-bfgs cannot keep limits of the stretch");
+        }
         self.energy().map(|_| ())
     }
 

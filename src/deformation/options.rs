@@ -13,15 +13,38 @@ pub enum Material {
         /// Poisson's ratio, below 0.5.
         poisson: f64,
     },
+    /// Stable neo-Hookean elasticity (Smith, de Goes & Kim 2018).
+    StableNeoHookean {
+        /// As that of neo-Hookean.
+        young: f64,
+        /// As that of neo-Hookean.
+        poisson: f64,
+    },
+    /// St. Venant–Kirchhoff elasticity: for large turns and small strains.
+    StVenantKirchhoff {
+        /// As that of neo-Hookean.
+        young: f64,
+        /// As that of neo-Hookean.
+        poisson: f64,
+    },
     /// As rigid as possible.
     Arap,
     /// Symmetric Dirichlet: a barrier against inversion.
     SymmetricDirichlet,
+    /// Dirichlet: the harmonic map of the pins.
+    Dirichlet,
 }
 
 impl Material {
     /// The names on the command line and in JavaScript; the first is the default.
-    pub const NAMES: [&str; 3] = ["neo-hookean", "arap", "symmetric-dirichlet"];
+    pub const NAMES: [&str; 6] = [
+        "neo-hookean",
+        "stable-neo-hookean",
+        "st-venant-kirchhoff",
+        "arap",
+        "symmetric-dirichlet",
+        "dirichlet",
+    ];
     /// Young's modulus of the paper's quasi-static examples.
     pub const YOUNG: f64 = 1e7;
     /// Poisson's ratio of the paper's quasi-static examples.
@@ -31,6 +54,9 @@ impl Material {
     pub fn named(name: &str, young: f64, poisson: f64) -> Option<Self> {
         Some(match name {
             "neo-hookean" => Self::NeoHookean { young, poisson },
+            "stable-neo-hookean" => Self::StableNeoHookean { young, poisson },
+            "st-venant-kirchhoff" => Self::StVenantKirchhoff { young, poisson },
+            "dirichlet" => Self::Dirichlet,
             "arap" => Self::Arap,
             "symmetric-dirichlet" => Self::SymmetricDirichlet,
             _ => return None,
@@ -47,7 +73,7 @@ impl Default for Material {
     }
 }
 
-/// How the energy is minimised: the four curves of the paper's figure 4.
+/// How the energy is minimised: the four curves of the paper's figure 4, and one beside them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
@@ -60,6 +86,9 @@ pub enum DeformationMethod {
     WAdmm,
     /// Neither (Overby et al. 2017).
     AdmmPd,
+    /// L-BFGS that begins with the Laplacian (Liu, Bouaziz & Kavan 2017).
+    #[serde(rename = "l-bfgs")]
+    Lbfgs,
 }
 
 /// Options of [`super::Deformation`]. `Default` is the paper's choice for quasi-statics (§6.1, §7.1).

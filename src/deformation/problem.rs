@@ -4,7 +4,9 @@ use super::body::{Body, check};
 use super::{DeformationOptions, Material, Supports, Target};
 use crate::Error;
 use crate::certificate::SolidCertificate;
-use crate::energy::{Arap, NeoHookean, SymmetricDirichlet};
+use crate::energy::{
+    Arap, Dirichlet, NeoHookean, StVenantKirchhoff, StableNeoHookean, SymmetricDirichlet,
+};
 use crate::geometry::RestShape;
 use crate::mesh::SolidMesh;
 use crate::optim::{Deformer, Field, Solver, StepReport, Stopwatch};
@@ -78,6 +80,13 @@ impl Deformation {
             Material::NeoHookean { young, poisson } => {
                 body.solver::<Solid, _>(NeoHookean::new(young, poisson)?)
             }
+            Material::StableNeoHookean { young, poisson } => {
+                body.solver::<Solid, _>(StableNeoHookean::new(young, poisson)?)
+            }
+            Material::StVenantKirchhoff { young, poisson } => {
+                body.solver::<Solid, _>(StVenantKirchhoff::new(young, poisson)?)
+            }
+            Material::Dirichlet => body.solver::<Solid, _>(Dirichlet),
             Material::Arap => body.solver::<Solid, _>(Arap),
             Material::SymmetricDirichlet => body.solver::<Solid, _>(SymmetricDirichlet),
         }?;

@@ -43,6 +43,9 @@ impl<S: Space> Energy<S> for Arap {
             |i| sigma.at(i).lift(2.0) * (sigma.at(i) - sigma.at(i).lift(1.0)),
         )
     }
+    fn hessian(&self, _: S::Sigma<f64>) -> [[f64; 3]; 3] {
+        super::hessian::diagonal::<S>(|_| 2.0)
+    }
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
         sigma.at(0).lift(2.0)

@@ -85,6 +85,9 @@ impl<S: Space> Energy<S> for LimitedArap {
             },
         )
     }
+    fn hessian(&self, _: S::Sigma<f64>) -> [[f64; 3]; 3] {
+        super::hessian::diagonal::<S>(|_| self.stiffness)
+    }
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
         sigma.at(0).lift(self.stiffness)

@@ -1,14 +1,23 @@
 //! Deformation energies as functions of the singular values: one file an energy.
 
 mod arap;
+mod dirichlet;
+pub mod hessian;
 mod limited_arap;
+mod moduli;
 mod neo_hookean;
+mod newton;
+mod st_venant_kirchhoff;
+mod stable_neo_hookean;
 mod symmetric_dirichlet;
 pub mod total;
 
 pub use arap::Arap;
+pub use dirichlet::Dirichlet;
 pub use limited_arap::LimitedArap;
 pub use neo_hookean::NeoHookean;
+pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use stable_neo_hookean::StableNeoHookean;
 pub use symmetric_dirichlet::SymmetricDirichlet;
 
 use crate::space::{Lane, Space};
@@ -19,10 +28,13 @@ pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
     fn density<L: Lane>(&self, sigma: S::Sigma<L>) -> L;
     /// ∂ψ/∂σᵢ.
     fn gradient<L: Lane>(&self, sigma: S::Sigma<L>) -> S::Sigma<L>;
+    /// ∂²ψ/∂σᵢ∂σⱼ; entries beyond k are 0.
+    fn hessian(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3];
     /// K_e(σ), the largest eigenvalue of ∂²ψ/∂σ² (20).
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L;
-    /// argmin_z ψ(z) + k/2 ‖z − p‖² (6), to rounding, and how many inner iterations it took.
-    /// `warm` is where to begin (entries > 0).
+    /// argmin_z ψ(z) + k/2 ‖z − p‖² (6), to rounding, and how many inner iterations it took. Where
+    /// that has several minima it may be one that is not the lowest. `warm` is where to begin (entries
+    /// > 0, but for the last of an energy without barrier).
     fn prox<L: Lane>(&self, p: S::Sigma<L>, k: L, warm: S::Sigma<L>) -> (S::Sigma<L>, u32);
     /// Does the energy need all σ > 0 (a barrier against inversion)?
     const BARRIER: bool;
@@ -38,9 +50,10 @@ pub trait Energy<S: Space>: Copy + Send + Sync + 'static {
 /// Numbers of an energy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
-    /// The stiffness at rest, K_e(1) (21).
+    /// The weight of an element at rest (21): K_e(1), or, where a change of volume is much stiffer
+    /// than all else, what one axis feels.
     pub rest_stiffness: f64,
-    /// ψ of an isometry.
+    /// ψ of an isometry; 0 where ψ is reported as it is.
     pub isometry: f64,
     /// Reported energy = scale · Σ A (ψ − isometry) + offset.
     pub scale: f64,

@@ -113,6 +113,9 @@ impl<S: Space> Energy<S> for SymmetricDirichlet {
             },
         )
     }
+    fn hessian(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3] {
+        super::hessian::diagonal::<S>(|i| 2.0 + 6.0 * sigma.at(i).powi(-4))
+    }
     #[inline(always)]
     fn effective_stiffness<L: Lane>(&self, sigma: S::Sigma<L>) -> L {
         let mut least = sigma.at(0);

@@ -146,6 +146,13 @@ impl Lbfgs {
         self.slope
     }
 
+    /// The step along the last direction is `t` times as long: to be called before [`Self::push`] with
+    /// that step.
+    pub fn shorten(&mut self, t: f64) {
+        self.slope *= t;
+        self.along_direction.iter_mut().for_each(|a| *a *= t);
+    }
+
     /// Remembers the last direction as a step that was taken in full, and the gradients of the same
     /// objective before and after it. A pair without positive curvature (s·y ≤ 0 up to rounding) is
     /// not kept.

@@ -9,15 +9,16 @@
 //! 2. global step (10a): L-BFGS on the positions, with H₀ = A⁻¹ (5a), until (17);
 //! 3. reweighting (23), refactorisation.
 
-mod block;
+pub(crate) mod block;
 mod coupling;
-mod elements;
-mod external;
-mod kernels;
-mod layout;
+pub(crate) mod elements;
+pub(crate) mod external;
+pub(crate) mod kernels;
+pub(crate) mod layout;
 mod options;
 mod problem;
 mod solver;
+pub(crate) mod system;
 
 pub use coupling::{Coupling, Linear, RotationAware};
 pub use external::External;

@@ -7,10 +7,10 @@ use super::elements::{Elements, Model, Shape};
 use super::external::Terms;
 use super::kernels::Pass;
 use super::layout::{build_blocks, corner_lists, element_order};
+use super::system::System;
 use super::{Coupling, Problem, WrapdOptions};
 use crate::energy::Energy;
 use crate::geometry::Elimination;
-use crate::linalg::{Cholesky, WeightedSum};
 use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
@@ -52,8 +52,7 @@ pub struct Wrapd {
     direction: Vec<f64>,
     /// Terms beside the elements.
     terms: Option<Terms>,
-    matrix: WeightedSum,
-    factor: Cholesky,
+    system: System,
     history: Lbfgs,
     report: StepReport,
     /// Iterations with the rest weights, for this start.
@@ -94,24 +93,12 @@ impl Wrapd {
         // from here on elements are in the order of their vertices' slots
         let order = element_order(rest, &elimination.slot);
         let rest = &rest.reordered(&order);
-        let mut contributions = elimination.laplacian(rest);
         let terms = problem.external.map(|external| {
-            let constant = rest.len() as u32;
-            let slot = |v: u32| elimination.slot[v as usize];
-            let coupled = external.stiffness.iter();
-            contributions.extend(coupled.map(|&(a, b, k)| (slot(a), slot(b), constant, k)));
-            // springs may come to any vertex
-            let free = 0..elimination.free as u32;
-            contributions.extend(free.map(|s| (s, s, constant + 1 + s, 1.0)));
             Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
-        let mut matrix = WeightedSum::new(elimination.free, &contributions);
-        fill(&mut matrix, rest.len(), terms.as_ref(), |_| {
-            shape.constants.rest_stiffness
-        });
-        let mut factor = Cholesky::analyze(matrix.matrix(), &elimination.levels)?;
-        factor
-            .factorize(matrix.matrix())
+        let mut system = System::new(rest, &elimination, problem.external)?;
+        system
+            .factorize(terms.as_ref(), |_| shape.constants.rest_stiffness)
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
         let Elimination { slot, free, .. } = elimination;
@@ -143,8 +130,7 @@ impl Wrapd {
             squares: vec![0.0; free.div_ceil(VERTICES)],
             direction: vec![0.0; unknowns],
             terms,
-            matrix,
-            factor,
+            system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
             delay: 0,
@@ -288,7 +274,7 @@ impl Wrapd {
         let mut count = 0;
         loop {
             let mut slope = self.history.direction(
-                &mut self.factor,
+                &mut self.system.factor,
                 self.shape.dimension,
                 &self.gradient,
                 &mut self.direction,
@@ -353,13 +339,12 @@ impl Wrapd {
 
     /// Factors the matrix of the current weights and springs.
     fn refactor(&mut self, iteration: usize) -> Result<(), SolveError> {
-        let (blocks, terms) = (&self.blocks, self.terms.as_ref());
-        fill(&mut self.matrix, self.order.len(), terms, |e| {
-            blocks[e / BLOCK].stiffness[0][e % BLOCK]
-        });
+        let blocks = &self.blocks;
         self.history.clear();
-        self.factor
-            .factorize(self.matrix.matrix())
+        self.system
+            .factorize(self.terms.as_ref(), |e| {
+                blocks[e / BLOCK].stiffness[0][e % BLOCK]
+            })
             .map_err(|e| SolveError::NotPositiveDefinite {
                 iteration,
                 pivot: e.pivot,
@@ -447,7 +432,7 @@ impl Wrapd {
 
     /// Entries of the Cholesky factor.
     pub fn factor_entries(&self) -> usize {
-        self.factor.factor_entries()
+        self.system.factor.factor_entries()
     }
 }
 
@@ -475,18 +460,4 @@ impl Solver for Wrapd {
             weights: self.by_element(|block, e| (block.stiffness[0][e] / rest) as f32),
         }
     }
-}
-
-/// Fills the system matrix: element weights, then 1 for the constant terms, then the springs.
-fn fill(
-    matrix: &mut WeightedSum,
-    elements: usize,
-    terms: Option<&Terms>,
-    stiffness: impl Fn(usize) -> f64 + Sync + Send,
-) {
-    matrix.fill(|e| match (e < elements, terms) {
-        (true, _) => stiffness(e),
-        (false, Some(terms)) if e > elements => terms.spring_stiffness[e - elements - 1],
-        _ => 1.0,
-    });
 }

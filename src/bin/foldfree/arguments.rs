@@ -106,14 +106,14 @@ pub struct Deform {
     /// Elastic energy.
     #[arg(long, default_value = Material::NAMES[0], value_parser = PossibleValuesParser::new(Material::NAMES))]
     pub energy: String,
-    /// Young's modulus (neo-hookean).
+    /// Young's modulus (neo-hookean, stable-neo-hookean, st-venant-kirchhoff).
     #[arg(long, value_name = "E", default_value_t = Material::YOUNG)]
     pub young: f64,
-    /// Poisson's ratio (neo-hookean).
+    /// Poisson's ratio (the same).
     #[arg(long, value_name = "N", default_value_t = Material::POISSON)]
     pub poisson: f64,
     /// How.
-    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd"]))]
+    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs"]))]
     pub method: DeformationMethod,
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]

@@ -1,4 +1,5 @@
-//! A bar to deform.
+//! Bars of tetrahedra.
+#![allow(dead_code)] // not every test uses all
 
 use foldfree::mesh::SolidMesh;
 use glam::{DMat3, DVec3};
@@ -42,4 +43,19 @@ pub fn bar(nx: usize, n: usize) -> SolidMesh {
         }
     }
     mesh
+}
+
+/// The bar twisted by `angle` along its length, and its two ends.
+pub fn twisted(mesh: &SolidMesh, angle: f64) -> (Vec<DVec3>, Vec<u32>) {
+    let length = mesh.positions.iter().fold(0.0f64, |a, p| a.max(p.x));
+    let start = mesh.positions.iter().map(|&p| {
+        let centre = DVec3::new(0.0, 0.5, 0.5);
+        DMat3::from_rotation_x(angle * p.x / length) * (p - centre) + centre
+    });
+    let end = |&v: &u32| {
+        let x = mesh.positions[v as usize].x;
+        x == 0.0 || x == length
+    };
+    let pins = (0..mesh.positions.len() as u32).filter(end).collect();
+    (start.collect(), pins)
 }

@@ -1,0 +1,291 @@
+//! The iteration.
+
+use super::QuasiNewtonOptions;
+use super::evaluation::{Evaluation, Value};
+use crate::energy::Energy;
+use crate::geometry::Elimination;
+use crate::optim::lbfgs::Lbfgs;
+use crate::optim::vectors::{dot, set_combination};
+use crate::optim::{
+    BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Spring, Status,
+    StepReport, Stopwatch,
+};
+use crate::parallel;
+use crate::space::Space;
+use crate::wrapd::Problem;
+use crate::wrapd::external::Terms;
+use crate::wrapd::system::System;
+
+/// Most halvings of a step.
+const MOST_HALVINGS: u32 = 60;
+
+/// L-BFGS from a Laplacian, for any energy.
+pub struct QuasiNewton {
+    options: QuasiNewtonOptions,
+    evaluation: Evaluation,
+    /// Slot of each vertex: free ones in elimination order, then the pinned.
+    slot: Vec<u32>,
+    /// Positions by slot.
+    x: Vec<f64>,
+    /// Where the line search looks.
+    trial: Vec<f64>,
+    /// Positions by vertex.
+    positions: Vec<f64>,
+    gradient: Vec<f64>,
+    trial_gradient: Vec<f64>,
+    direction: Vec<f64>,
+    system: System,
+    history: Lbfgs,
+    report: StepReport,
+}
+
+impl QuasiNewton {
+    /// Factors the Laplacian of the weights at rest and evaluates the start.
+    ///
+    /// # Errors
+    /// As [`crate::wrapd::Wrapd::new`]; `NotInjectiveStart` where the energy is infinite.
+    pub fn new<S: Space, E: Energy<S>>(
+        problem: Problem,
+        energy: E,
+        options: QuasiNewtonOptions,
+    ) -> Result<Self, BuildError> {
+        options.validate()?;
+        problem.validate(S::DIM, S::STRETCHES)?;
+        let n = problem.start.len() / S::DIM;
+        let couplings = problem.external.map_or(&[][..], |e| &e.stiffness);
+        let elimination = Elimination::with_couplings(problem.rest, n, problem.pins, couplings);
+        let terms = problem.external.map(|external| {
+            Terms::new(external, problem.start, &elimination.slot, elimination.free)
+        });
+        let evaluation = Evaluation::new::<S, E>(energy, problem.rest, &elimination, terms);
+        parallel::in_pool(|| Self::build(problem, elimination, evaluation, options))
+    }
+
+    fn build(
+        problem: Problem,
+        elimination: Elimination,
+        evaluation: Evaluation,
+        options: QuasiNewtonOptions,
+    ) -> Result<Self, BuildError> {
+        let constants = evaluation.shape.constants;
+        let mut system = System::new(problem.rest, &elimination, problem.external)?;
+        system
+            .factorize(evaluation.terms.as_ref(), |_| constants.rest_stiffness)
+            .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
+
+        let Elimination { slot, free, .. } = elimination;
+        let dimension = evaluation.shape.dimension;
+        let mut x = vec![0.0; problem.start.len()];
+        for (position, &s) in problem.start.chunks_exact(dimension).zip(&slot) {
+            x[s as usize * dimension..][..dimension].copy_from_slice(position);
+        }
+        let unknowns = || vec![0.0; free * dimension];
+        let mut this = Self {
+            options,
+            evaluation,
+            slot,
+            trial: x.clone(),
+            x,
+            positions: problem.start.to_vec(),
+            gradient: unknowns(),
+            trial_gradient: unknowns(),
+            direction: unknowns(),
+            system,
+            history: Lbfgs::new(options.history),
+            report: StepReport::at_start(),
+        };
+        let start = this.evaluation.at(&this.x, &mut this.gradient);
+        if start.energy == f64::INFINITY && this.evaluation.shape.barrier {
+            let inverted = start.inverted;
+            return Err(BuildError::NotInjectiveStart { inverted });
+        }
+        this.take(start);
+        if options.max_iterations == 0 {
+            this.report.status = Status::MaxIterations;
+        }
+        Ok(this)
+    }
+
+    /// Fills the report from an evaluation whose gradient is in `gradient`.
+    fn take(&mut self, value: Value) {
+        self.report.energy = value.energy;
+        self.report.inverted = value.inverted;
+        self.report.smallest_sigma = value.smallest;
+        self.report.largest_sigma = value.largest;
+        let scale = self.evaluation.shape.constants.scale;
+        self.report.gradient_norm = scale * dot(&self.gradient, &self.gradient).sqrt();
+    }
+
+    /// The direction −H g into `direction`, and its slope: without a history where that is not downhill.
+    fn descend(&mut self) -> f64 {
+        let dimension = self.evaluation.shape.dimension;
+        let mut slope = f64::NAN;
+        for _ in 0..2 {
+            slope = self.history.direction(
+                &mut self.system.factor,
+                dimension,
+                &self.gradient,
+                &mut self.direction,
+            );
+            if slope < 0.0 {
+                break;
+            }
+            self.history.clear();
+        }
+        slope
+    }
+
+    /// The longest of the steps 1, ½, ¼, … that satisfies Armijo's rule, and the evaluation there, which
+    /// is in `trial` and `trial_gradient`; the number of trials.
+    fn search(&mut self, slope: f64) -> (Option<(f64, Value)>, u32) {
+        let unknowns = self.direction.len();
+        let demanded = self.options.decrease * self.evaluation.shape.constants.scale * slope;
+        let mut t = 1.0;
+        for trials in 1..=MOST_HALVINGS {
+            let along = core::iter::once((t, &self.direction[..]));
+            set_combination(
+                (1.0, &self.x[..unknowns]),
+                along,
+                &mut self.trial[..unknowns],
+            );
+            let value = self.evaluation.at(&self.trial, &mut self.trial_gradient);
+            if value.energy <= self.report.energy + t * demanded {
+                return (Some((t, value)), trials);
+            }
+            t *= 0.5;
+        }
+        (None, MOST_HALVINGS)
+    }
+
+    fn iterate(&mut self) -> Result<(), SolveError> {
+        let begun = Stopwatch::start();
+        let dimension = self.evaluation.shape.dimension;
+        let before = self.report.energy;
+        let iteration = self.report.iteration + 1;
+        if let Some(bad) = self.gradient.iter().position(|g| !g.is_finite()) {
+            let slot = (bad / dimension) as u32;
+            let vertex = self.slot.iter().position(|&s| s == slot).unwrap_or(0);
+            return Err(SolveError::NonFinite { iteration, vertex });
+        }
+
+        let clock = Stopwatch::start();
+        let mut slope = self.descend();
+        let mut global = Phase::new(PhaseKind::Global, 1, clock);
+
+        let clock = Stopwatch::start();
+        let (mut found, mut trials) = self.search(slope);
+        if found.is_none() && !self.history.is_empty() {
+            // the history misleads: once more without it
+            self.history.clear();
+            slope = self.descend();
+            global.count += 1;
+            let (again, more) = self.search(slope);
+            found = again;
+            trials += more;
+        }
+        self.report.iteration = iteration;
+        self.report.lbfgs_iterations = 1;
+        match found {
+            Some((t, value)) => {
+                if t < 1.0 {
+                    self.direction.iter_mut().for_each(|d| *d *= t);
+                    self.history.shorten(t);
+                }
+                self.history
+                    .push(&self.direction, &self.gradient, &self.trial_gradient);
+                core::mem::swap(&mut self.x, &mut self.trial);
+                core::mem::swap(&mut self.gradient, &mut self.trial_gradient);
+                self.take(value);
+                for (position, &s) in self.positions.chunks_exact_mut(dimension).zip(&self.slot) {
+                    position.copy_from_slice(&self.x[s as usize * dimension..][..dimension]);
+                }
+                self.report.settle(
+                    (before, self.evaluation.shape.constants.floor),
+                    true,
+                    self.options.tolerance,
+                    self.options.max_iterations,
+                );
+            }
+            // also at a minimum to rounding, where no step is seen to lower the energy
+            None => {
+                // what is inspected is the iterate, not the last trial
+                self.evaluation.at(&self.x, &mut self.trial_gradient);
+                self.report.status = Status::Stalled;
+            }
+        }
+        let evaluate = Phase::new(PhaseKind::Evaluate, trials, clock);
+        self.report.seconds += begun.seconds();
+        self.report.phases.clear();
+        self.report.phases.extend([global, evaluate]);
+        Ok(())
+    }
+}
+
+impl Solver for QuasiNewton {
+    fn step(&mut self) -> Result<StepReport, SolveError> {
+        parallel::in_pool(|| self.iterate())?;
+        Ok(self.report.clone())
+    }
+    fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+    fn dimension(&self) -> usize {
+        self.evaluation.shape.dimension
+    }
+    fn status(&self) -> Status {
+        self.report.status
+    }
+    fn report(&self) -> &StepReport {
+        &self.report
+    }
+    fn inspect(&self) -> Inspection {
+        Inspection {
+            distortion: self.field(Field::Distortion),
+            weights: Vec::new(),
+        }
+    }
+}
+
+impl Deformer for QuasiNewton {
+    fn retarget(
+        &mut self,
+        positions: &[(u32, [f64; 3])],
+        springs: &[Spring],
+    ) -> Result<(), SolveError> {
+        let (dimension, unknowns) = (self.evaluation.shape.dimension, self.gradient.len());
+        for (vertex, point) in positions {
+            let at = self.slot[*vertex as usize] as usize * dimension;
+            assert!(at >= unknowns, "vertex {vertex} is not pinned");
+            for x in [&mut self.x, &mut self.trial] {
+                x[at..at + dimension].copy_from_slice(&point[..dimension]);
+            }
+            let at = *vertex as usize * dimension;
+            self.positions[at..at + dimension].copy_from_slice(&point[..dimension]);
+        }
+        parallel::in_pool(|| {
+            let terms = self.evaluation.terms.as_mut();
+            assert!(terms.is_some() || springs.is_empty(), "no external terms");
+            if terms.is_some_and(|terms| terms.set_springs(springs, &self.slot)) {
+                let stiffness = self.evaluation.shape.constants.rest_stiffness;
+                self.system
+                    .factorize(self.evaluation.terms.as_ref(), |_| stiffness)
+                    .map_err(|e| SolveError::NotPositiveDefinite {
+                        iteration: self.report.iteration,
+                        pivot: e.pivot,
+                    })?;
+            }
+            // the objective is another one, and its gradient at the same point, too
+            self.history.clear();
+            let value = self.evaluation.at(&self.x, &mut self.gradient);
+            self.take(value);
+            if self.report.iteration < self.options.max_iterations {
+                self.report.status = Status::Running;
+            }
+            Ok(())
+        })
+    }
+
+    fn field(&self, field: Field) -> Vec<f32> {
+        self.evaluation.field(field)
+    }
+}
