@@ -200,8 +200,7 @@ proptest! {
 /// missing, nothing is tested.
 #[test]
 fn meshes_of_others_are_read() {
-    let folder =
-        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/untangle");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/untangle");
     // (name, vertices, triangles, tetrahedra, inverted at the start)
     let expected = [
         ("bar12k", 2541, 0, 12000, 4502),
