@@ -61,7 +61,7 @@ impl Evaluation {
         let stride = Pass::Last.stride(shape.dimension);
         Self {
             shape,
-            elements: Box::new(Model::<S, Linear, E>::new(energy)),
+            elements: Box::new(Model::<S, Linear>::new(energy)),
             measure: rest.measure.iter().sum(),
             order,
             forces: vec![0.0; (rest.stretches + 1) * BLOCK * stride * blocks.len()],

@@ -1,10 +1,10 @@
-//! The element loops of a space, a coupling and an energy behind one call a block, so that the solver
-//! itself is compiled once.
+//! The element loops of a space and a coupling behind one call a block, so that the solver itself is
+//! compiled once.
 
 use super::Coupling;
 use super::block::{Block, BlockSums};
+use super::densities::{Densities, Of};
 use super::kernels::{Kernel, Pass};
-use crate::energy::total::field_value;
 use crate::energy::{Constants, Energy};
 use crate::optim::Field;
 use crate::space::{Components, Space, dispatch};
@@ -65,22 +65,22 @@ pub trait Elements: Send + Sync {
 }
 
 /// An energy on a splitting of F.
-pub struct Model<S, C, E> {
-    energy: E,
+pub struct Model<S, C> {
+    energy: Box<dyn Densities>,
     types: PhantomData<(S, C)>,
 }
 
-impl<S, C, E> Model<S, C, E> {
+impl<S: Space, C: Coupling<S>> Model<S, C> {
     /// Of this energy.
-    pub fn new(energy: E) -> Self {
+    pub fn new<E: Energy<S>>(energy: E) -> Self {
         Self {
-            energy,
+            energy: Box::new(Of::<S, E>::new(energy)),
             types: PhantomData,
         }
     }
 }
 
-impl<S: Space, C: Coupling<S>, E: Energy<S>> Elements for Model<S, C, E> {
+impl<S: Space, C: Coupling<S>> Elements for Model<S, C> {
     fn pass(
         &self,
         pass: Pass,
@@ -88,17 +88,17 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Elements for Model<S, C, E> {
         positions: &[f64],
         forces: &mut [f64],
     ) -> BlockSums {
-        dispatch(Kernel::<S, C, E> {
+        dispatch(Kernel::<S, C> {
             pass,
             block,
             positions,
             forces,
-            energy: self.energy,
+            energy: &*self.energy,
             types: PhantomData,
         })
     }
     fn field(&self, block: &Block, element: usize, field: Field) -> f32 {
-        let sigma = S::Sigma::from_fn(|i| block.stretch[i][element]);
-        field_value::<S, E>(self.energy, sigma, field)
+        let sigma = |i: usize| block.stretch.get(i).map_or(0.0, |row| row[element]);
+        self.energy.field([sigma(0), sigma(1), sigma(2)], field)
     }
 }

@@ -5,8 +5,8 @@
 
 use super::Coupling;
 use super::block::{BLOCK, Block, BlockSums, load, packs, store};
-use crate::energy::Energy;
-use crate::space::{Components, Lane, Pack, Scalar, Space};
+use super::densities::{Densities, MOST, PACKS, load_few, store_few};
+use crate::space::{Components, Lane, Pack, Space};
 use core::marker::PhantomData;
 use pulp::{Simd, WithSimd};
 
@@ -41,7 +41,7 @@ impl Pass {
 }
 
 /// One pass over one block.
-pub struct Kernel<'a, S, C, E> {
+pub struct Kernel<'a, S, C> {
     /// What to do.
     pub pass: Pass,
     /// The elements.
@@ -52,7 +52,7 @@ pub struct Kernel<'a, S, C, E> {
     /// followed by those of the energy.
     pub forces: &'a mut [f64],
     /// The energy.
-    pub energy: E,
+    pub energy: &'a dyn Densities,
     /// Space and coupling.
     pub types: PhantomData<(S, C)>,
 }
@@ -118,6 +118,9 @@ fn deformation_gradient<S: Space, V: Simd>(
     )
 }
 
+/// A vector a corner.
+type Corners<V> = [[Pack<V>; 3]; 4];
+
 /// The forces of scale · M on the corners: f_v = M g_v, f_0 = −Σ f_v.
 #[inline(always)]
 fn spread<S: Space, V: Simd>(
@@ -126,7 +129,7 @@ fn spread<S: Space, V: Simd>(
     m: S::Gradient<Pack<V>>,
     scale: Pack<V>,
     at: usize,
-) -> [[Pack<V>; 3]; 4] {
+) -> Corners<V> {
     let zero = Pack::splat(simd, 0.0);
     let mut corners = [[zero; 3]; 4];
     for v in 0..S::STRETCHES {
@@ -149,7 +152,7 @@ fn spread<S: Space, V: Simd>(
 /// Writes corner forces: K vectors a corner, side by side.
 #[inline(always)]
 fn store_corners<S: Space, V: Simd, const K: usize>(
-    vectors: [[[Pack<V>; 3]; 4]; K],
+    vectors: [Corners<V>; K],
     forces: &mut [f64],
     at: usize,
 ) {
@@ -173,7 +176,7 @@ fn store_corners<S: Space, V: Simd, const K: usize>(
     }
 }
 
-impl<S: Space, C: Coupling<S>, E: Energy<S>> WithSimd for Kernel<'_, S, C, E> {
+impl<S: Space, C: Coupling<S>> WithSimd for Kernel<'_, S, C> {
     type Output = BlockSums;
 
     #[inline(always)]
@@ -184,13 +187,32 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> WithSimd for Kernel<'_, S, C, E> {
                 threshold,
                 reset,
             } => self.local(simd, clamp, threshold, reset),
-            Pass::Forces => self.forces::<V, false>(simd),
-            Pass::Last => self.forces::<V, true>(simd),
+            Pass::Forces => self.forces(simd),
+            Pass::Last => self.last(simd),
         }
     }
 }
 
-impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
+/// Where the packs of a call to the energy begin, and how many elements it is about.
+#[inline(always)]
+fn calls<V: Simd>() -> (impl Iterator<Item = usize>, usize) {
+    let count = PACKS * Pack::<V>::WIDTH;
+    let begins = (0..BLOCK / count).map(
+        #[inline(always)]
+        move |call| call * count,
+    );
+    (begins, count)
+}
+
+/// F and the forces of the coupling, from positions.
+#[derive(Clone, Copy)]
+struct Moved<A, F, C> {
+    f: F,
+    aux: A,
+    force: C,
+}
+
+impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
     #[inline(always)]
     fn local<V: Simd>(self, simd: V, clamp: [f64; 2], threshold: f64, reset: bool) -> BlockSums {
         let Self {
@@ -199,86 +221,112 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             energy,
             ..
         } = self;
+        let width = Pack::<V>::WIDTH;
         let (mut change, mut z_energy) = (RunningSums::default(), RunningSums::default());
         let mut prox_iterations = 0;
         let mut reweight = false;
+        let zero = Pack::splat(simd, 0.0);
+        let half = Pack::splat(simd, 0.5);
         let threshold = Pack::splat(simd, threshold);
         let least = Pack::splat(simd, clamp[0]);
         let most = Pack::splat(simd, clamp[1]);
-        for at in packs::<V>() {
-            let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
-            let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
-            let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
-            let (s, aux) = C::local(f);
-            let (z_old, u, density_old) = if reset {
-                let zero = area.lift(0.0);
-                let (sigma, _) = C::spectrum(s);
-                (
-                    s,
-                    C::Local::from_fn(
-                        #[inline(always)]
-                        |_| zero,
-                    ),
-                    guarded_density::<S, E, _>(energy, sigma),
-                )
-            } else {
-                let [density]: [Pack<V>; 1] = load(simd, &block.z_density, at);
-                (
-                    load::<V, C::Local<_>>(simd, &block.z, at),
-                    load::<V, C::Local<_>>(simd, &block.u, at),
-                    density,
-                )
-            };
-            let half_k = area.lift(0.5) * k;
-            let target = s.zip(
-                u,
+        // rest weights need no eigenvalues
+        let weighs = clamp[0] < clamp[1];
+        let (mut values, mut sigmas) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
+        let (mut weights, mut densities, mut stiffness) = ([0.0; MOST], [0.0; MOST], [0.0; MOST]);
+        let (calls, count) = calls::<V>();
+        for begin in calls {
+            // what the energy does not change: the target sym(F) + U, its frame, and ‖target − Z‖²
+            let prepared = <[_; PACKS] as Components<_>>::from_fn(
                 #[inline(always)]
-                |s, u| s + u,
+                |pack| {
+                    let at = begin + pack * width;
+                    let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
+                    let (s, aux) = C::local(f);
+                    let (target, misfit) = if reset {
+                        (s, zero)
+                    } else {
+                        let z: C::Local<Pack<V>> = load(simd, &block.z, at);
+                        let u: C::Local<Pack<V>> = load(simd, &block.u, at);
+                        let target = s.zip(
+                            u,
+                            #[inline(always)]
+                            |s, u| s + u,
+                        );
+                        let away = target.zip(
+                            z,
+                            #[inline(always)]
+                            |t, z| t - z,
+                        );
+                        (target, C::norm_squared(away))
+                    };
+                    let (p, frame) = C::spectrum(target);
+                    store_few(p, &mut values, pack * width);
+                    (target, frame, aux, misfit)
+                },
             );
-            let l0 = density_old
-                + half_k
-                    * C::norm_squared(target.zip(
-                        z_old,
-                        #[inline(always)]
-                        |t, z| t - z,
-                    ));
-            let (p, frame) = C::spectrum(target);
-            let warm: S::Sigma<Pack<V>> = load(simd, &block.sigma, at);
-            let (sigma, count) = energy.prox(p, k, warm);
-            prox_iterations = prox_iterations.max(count);
-            let z: C::Local<Pack<V>> = C::compose(sigma, frame);
-            let density = energy.density(sigma);
-            let dual = target.zip(
-                z,
-                #[inline(always)]
-                |t, z| t - z,
+            let few = begin..begin + count;
+            for (row, sigma) in sigmas.iter_mut().zip(&block.sigma) {
+                row[..count].copy_from_slice(&sigma[few.clone()]);
+            }
+            weights[..count].copy_from_slice(&block.stiffness[0][few.clone()]);
+            if reset {
+                // Z is sym(F), whose values are those of the target
+                energy.evaluate(count, &values, &mut densities, None);
+                block.z_density[0][few].copy_from_slice(&densities[..count]);
+            }
+            let iterations = energy.prox(
+                count,
+                &values,
+                &weights,
+                &mut sigmas,
+                &mut densities,
+                weighs.then_some(&mut stiffness),
             );
-            let l1 = density + half_k * C::norm_squared(dual);
-            change.add(simd, area * (l1 - l0), at);
-            z_energy.add(simd, area * density, at);
+            prox_iterations = prox_iterations.max(iterations);
+            for (pack, (target, frame, aux, misfit)) in prepared.into_iter().enumerate() {
+                let at = begin + pack * width;
+                let few = pack * width..(pack + 1) * width;
+                let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
+                let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
+                let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
+                let [density_old]: [Pack<V>; 1] = load(simd, &block.z_density, at);
+                let sigma: S::Sigma<Pack<V>> = load_few(simd, &sigmas, pack * width);
+                let density = Pack::load(simd, &densities[few.clone()]);
+                let half_k = half * k;
+                let l0 = density_old + half_k * misfit;
+                let z: C::Local<Pack<V>> = C::compose(sigma, frame);
+                let dual = target.zip(
+                    z,
+                    #[inline(always)]
+                    |t, z| t - z,
+                );
+                let l1 = density + half_k * C::norm_squared(dual);
+                change.add(simd, area * (l1 - l0), at);
+                z_energy.add(simd, area * density, at);
 
-            // rest weights need no eigenvalues
-            let stiff = match clamp[0] < clamp[1] {
-                true => energy.effective_stiffness(sigma).max(least).min(most),
-                false => least,
-            };
-            // (23): stiff/k ≥ γ or k/stiff ≥ γ
-            let off = (threshold * stiff.min(k)).lt(stiff.max(k));
-            reweight |= stiff.any(off);
-            let p = z.zip(
-                dual,
-                #[inline(always)]
-                |z, u| z - u,
-            );
-            let m = C::residual(f, aux, p);
-            let force = spread::<S, V>(simd, block, m, area * k, at);
-            store_corners::<S, V, 1>([force], forces, at);
+                let stiff = match weighs {
+                    true => Pack::load(simd, &stiffness[few]).max(least).min(most),
+                    false => least,
+                };
+                // (23): stiff/k ≥ γ or k/stiff ≥ γ
+                let off = (threshold * stiff.min(k)).lt(stiff.max(k));
+                reweight |= stiff.any(off);
+                let p = z.zip(
+                    dual,
+                    #[inline(always)]
+                    |z, u| z - u,
+                );
+                let m = C::residual(f, aux, p);
+                let force = spread::<S, V>(simd, block, m, area * k, at);
+                store_corners::<S, V, 1>([force], forces, at);
 
-            store(z, &mut block.z, at);
-            store(dual, &mut block.u, at);
-            store(sigma, &mut block.sigma, at);
-            store([density], &mut block.z_density, at);
-            store([stiff], &mut block.candidate, at);
+                store(z, &mut block.z, at);
+                store(dual, &mut block.u, at);
+                store(sigma, &mut block.sigma, at);
+                store([density], &mut block.z_density, at);
+                store([stiff], &mut block.candidate, at);
+            }
         }
         BlockSums {
             lagrangian_change: change.total(),
@@ -289,8 +337,45 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
         }
     }
 
+    /// F at the positions, which is stored, and the forces of the coupling there.
     #[inline(always)]
-    fn forces<V: Simd, const EVALUATE: bool>(self, simd: V) -> BlockSums {
+    fn moved<V: Simd>(
+        simd: V,
+        block: &mut Block,
+        positions: &[f64],
+        at: usize,
+    ) -> Moved<C::Aux<Pack<V>>, S::Gradient<Pack<V>>, Corners<V>> {
+        let f = deformation_gradient::<S, V>(simd, block, positions, at);
+        let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
+        let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
+        let z: C::Local<Pack<V>> = load(simd, &block.z, at);
+        let u: C::Local<Pack<V>> = load(simd, &block.u, at);
+        let (_, aux) = C::local(f);
+        let m = C::residual(
+            f,
+            aux,
+            z.zip(
+                u,
+                #[inline(always)]
+                |z, u| z - u,
+            ),
+        );
+        let force = spread::<S, V>(simd, block, m, area * k, at);
+        store(f, &mut block.gradient, at);
+        Moved { f, aux, force }
+    }
+
+    #[inline(always)]
+    fn forces<V: Simd>(self, simd: V) -> BlockSums {
+        for at in packs::<V>() {
+            let moved = Self::moved(simd, self.block, self.positions, at);
+            store_corners::<S, V, 1>([moved.force], self.forces, at);
+        }
+        BlockSums::default()
+    }
+
+    #[inline(always)]
+    fn last<V: Simd>(self, simd: V) -> BlockSums {
         let Self {
             block,
             forces,
@@ -298,45 +383,44 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             positions,
             ..
         } = self;
+        let width = Pack::<V>::WIDTH;
         let mut sums = RunningSums::default();
         let mut inverted = RunningSums::default();
         let (zero, one) = (Pack::splat(simd, 0.0), Pack::splat(simd, 1.0));
         let mut extremes = [Pack::splat(simd, f64::INFINITY), zero];
-        for at in packs::<V>() {
-            let f = deformation_gradient::<S, V>(simd, block, positions, at);
-            let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
-            let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
-            let z: C::Local<Pack<V>> = load(simd, &block.z, at);
-            let u: C::Local<Pack<V>> = load(simd, &block.u, at);
-            let (_, aux) = C::local(f);
-            let m = C::residual(
-                f,
-                aux,
-                z.zip(
-                    u,
-                    #[inline(always)]
-                    |z, u| z - u,
-                ),
+        let (mut sigmas, mut gradients) = ([[0.0; MOST]; 3], [[0.0; MOST]; 3]);
+        let mut densities = [0.0; MOST];
+        let (calls, count) = calls::<V>();
+        for begin in calls {
+            let moved = <[_; PACKS] as Components<_>>::from_fn(
+                #[inline(always)]
+                |pack| {
+                    let at = begin + pack * width;
+                    let Moved { f, aux, force } = Self::moved(simd, block, positions, at);
+                    let (sigma, frame) = C::svd(f, aux);
+                    store_few(sigma, &mut sigmas, pack * width);
+                    (frame, force)
+                },
             );
-            let force = spread::<S, V>(simd, block, m, area * k, at);
-            store(f, &mut block.gradient, at);
-            if !EVALUATE {
-                store_corners::<S, V, 1>([force], forces, at);
-                continue;
+            energy.evaluate(count, &sigmas, &mut densities, Some(&mut gradients));
+            for (pack, (frame, force)) in moved.into_iter().enumerate() {
+                let at = begin + pack * width;
+                let sigma: S::Sigma<Pack<V>> = load_few(simd, &sigmas, pack * width);
+                store(sigma, &mut block.stretch, at);
+                let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
+                // ∂ψ/∂F = U ψ'(σ) Vᵀ
+                let stress = S::from_svd(load_few(simd, &gradients, pack * width), frame);
+                let stress = spread::<S, V>(simd, block, stress, area, at);
+                store_corners::<S, V, 2>([force, stress], forces, at);
+                // where an element is inverted the sum says nothing: it may be infinite, or, from the
+                // padding, not a number
+                let density = Pack::load(simd, &densities[pack * width..(pack + 1) * width]);
+                sums.add(simd, area * density, at);
+                let last = sigma.at(S::STRETCHES - 1);
+                extremes = [extremes[0].min(last), extremes[1].max(sigma.at(0))];
+                let folded = zero.select(zero.lt(last), zero, one);
+                inverted.add(simd, zero.select(zero.lt(area), folded, zero), at);
             }
-            let (sigma, frame) = C::svd(f, aux);
-            store(sigma, &mut block.stretch, at);
-            // ∂ψ/∂F = U ψ'(σ) Vᵀ
-            let stress = S::from_svd(energy.gradient(sigma), frame);
-            let stress = spread::<S, V>(simd, block, stress, area, at);
-            store_corners::<S, V, 2>([force, stress], forces, at);
-            // where an element is inverted the sum says nothing: it may be infinite, or, from the
-            // padding, not a number
-            sums.add(simd, area * guarded_density::<S, E, _>(energy, sigma), at);
-            let last = sigma.at(S::STRETCHES - 1);
-            extremes = [extremes[0].min(last), extremes[1].max(sigma.at(0))];
-            let folded = zero.select(zero.lt(last), zero, one);
-            inverted.add(simd, zero.select(zero.lt(area), folded, zero), at);
         }
         BlockSums {
             f_energy: sums.total(),
@@ -346,18 +430,6 @@ impl<S: Space, C: Coupling<S>, E: Energy<S>> Kernel<'_, S, C, E> {
             ..Default::default()
         }
     }
-}
-
-/// ψ(σ), +∞ where the energy is a barrier and the last σ is not positive.
-#[inline(always)]
-fn guarded_density<S: Space, E: Energy<S>, L: Lane>(energy: E, sigma: S::Sigma<L>) -> L {
-    let density = energy.density(sigma);
-    if !E::BARRIER {
-        return density;
-    }
-    let zero = density.lift(0.0);
-    let positive = zero.lt(sigma.at(S::STRETCHES - 1));
-    density.select(positive, density, density.lift(f64::INFINITY))
 }
 
 /// Eight running sums, the e-th element of a block into the (e mod 8)-th: the same at any SIMD width.

@@ -11,6 +11,7 @@
 
 pub(crate) mod block;
 mod coupling;
+mod densities;
 pub(crate) mod elements;
 pub(crate) mod external;
 pub(crate) mod kernels;

@@ -72,7 +72,7 @@ impl Wrapd {
         options: WrapdOptions,
     ) -> Result<Self, BuildError> {
         let shape = Shape::of::<S, C, E>(&energy);
-        let elements = Box::new(Model::<S, C, E>::new(energy));
+        let elements = Box::new(Model::<S, C>::new(energy));
         parallel::in_pool(|| Self::build(problem, shape, elements, options))
     }
 
