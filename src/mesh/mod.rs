@@ -14,7 +14,7 @@ pub mod topology;
 
 pub use cut::{Cut, cut_to_disk};
 pub use error::MeshError;
-pub use generate::{Shape, generate};
+pub use generate::{Shape, SolidShape, generate, generate_solid};
 use glam::DVec3;
 pub use prepare::{Prepared, prepare};
 pub use topology::Topology;

@@ -6,9 +6,11 @@
 mod closed;
 mod hilbert;
 mod open;
+mod solid;
 
 use super::SurfaceMesh;
 use glam::DVec3;
+pub use solid::{SolidShape, StuffingError, generate_solid, stuff};
 
 /// A sample shape.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -28,11 +30,15 @@ pub enum Shape {
     Sphere,
     /// A cube with rounded edges: closed, nearly developable faces.
     RoundedCube,
+    /// A flat square.
+    Sheet,
+    /// A flat disk.
+    RoundSheet,
 }
 
 impl Shape {
     /// All shapes, in the order a picker shows them.
-    pub const ALL: [Shape; 7] = [
+    pub const ALL: [Shape; 9] = [
         Shape::BumpyCap,
         Shape::Terrain,
         Shape::SpiralRamp,
@@ -40,6 +46,8 @@ impl Shape {
         Shape::Torus,
         Shape::Sphere,
         Shape::RoundedCube,
+        Shape::Sheet,
+        Shape::RoundSheet,
     ];
 
     /// The stable name, as used on the command line and in JavaScript (`"bumpy-cap"`).
@@ -52,6 +60,8 @@ impl Shape {
             Shape::Torus => "torus",
             Shape::Sphere => "sphere",
             Shape::RoundedCube => "rounded-cube",
+            Shape::Sheet => "sheet",
+            Shape::RoundSheet => "round-sheet",
         }
     }
 
@@ -70,6 +80,8 @@ impl Shape {
             Shape::Torus => "Torus",
             Shape::Sphere => "Sphere",
             Shape::RoundedCube => "Rounded cube",
+            Shape::Sheet => "Sheet",
+            Shape::RoundSheet => "Round sheet",
         }
     }
 
@@ -97,6 +109,8 @@ impl Shape {
             Shape::RoundedCube => {
                 "A cube with rounded edges: flat on its sides, with all its curvature in the eight corners."
             }
+            Shape::Sheet => "A flat square, as cloth lies before it is lifted.",
+            Shape::RoundSheet => "A flat disk, as a round cloth lies before it is lifted.",
         }
     }
 }
@@ -112,11 +126,18 @@ pub fn generate(shape: Shape, triangles: usize) -> SurfaceMesh {
         Shape::Torus => closed::torus(triangles),
         Shape::Sphere => closed::sphere(triangles),
         Shape::RoundedCube => closed::rounded_cube(triangles),
+        Shape::Sheet => open::sheet(triangles),
+        Shape::RoundSheet => open::round_sheet(triangles),
     };
-    for position in &mut mesh.positions {
+    round_positions(&mut mesh.positions);
+    mesh
+}
+
+/// Rounds coordinates to 1e-7.
+fn round_positions(positions: &mut [DVec3]) {
+    for position in positions {
         *position = (*position * 1e7).round() / 1e7;
     }
-    mesh
 }
 
 /// Splits a quad (counter-clockwise `a b c d`) along its shorter diagonal.

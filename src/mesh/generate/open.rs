@@ -1,4 +1,4 @@
-//! Shapes that are disks: bumpy cap, terrain, spiral ramp.
+//! Shapes that are disks: bumpy cap, terrain, spiral ramp, flat sheets.
 
 use super::{SurfaceMesh, push_quad, root, spherical, wish};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A hexagonal disk of `rings` rings (ring k has 6k vertices, 6·rings² triangles), each vertex
 /// placed by `place(radius in 0..=1, angle)`.
-fn hexagonal_disk(rings: usize, place: impl Fn(f64, f64) -> DVec3) -> SurfaceMesh {
+pub(super) fn hexagonal_disk(rings: usize, place: impl Fn(f64, f64) -> DVec3) -> SurfaceMesh {
     let start = |k: usize| if k == 0 { 0 } else { 1 + 3 * k * (k - 1) };
     let mut mesh = SurfaceMesh::default();
     mesh.positions.push(place(0.0, 0.0));
@@ -72,6 +72,22 @@ pub(super) fn terrain(triangles: usize) -> SurfaceMesh {
             amplitude *= 0.36;
         }
         DVec3::new(x, y, height)
+    })
+}
+
+/// A flat square of side 2, its diagonals alternating so that it bends alike to all sides.
+pub(super) fn sheet(triangles: usize) -> SurfaceMesh {
+    // With an even number of quads the pattern is symmetric.
+    let side = root(wish(triangles) / 8.0, 1) * 2;
+    grid(side, side, |s, t| {
+        DVec3::new(2.0 * s - 1.0, 2.0 * t - 1.0, 0.0)
+    })
+}
+
+/// A flat disk of radius 1.
+pub(super) fn round_sheet(triangles: usize) -> SurfaceMesh {
+    hexagonal_disk(root(wish(triangles) / 6.0, 2), |radius, angle| {
+        DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0)
     })
 }
 
