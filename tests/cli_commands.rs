@@ -30,6 +30,42 @@ fn generate_writes_every_shape_in_every_format() {
 }
 
 #[test]
+fn generate_writes_every_solid() {
+    use foldfree::mesh::io::{read_ele, read_node};
+    let folder = Folder::new("generate-solid");
+    for shape in foldfree::mesh::SolidShape::ALL {
+        for out in ["a.node", "b.ele.gz"] {
+            let ran = folder
+                .run(&[
+                    "generate",
+                    shape.name(),
+                    "--tetrahedra",
+                    "600",
+                    "--out",
+                    out,
+                ])
+                .ends(0);
+            assert!(
+                ran.stdout.contains("tetrahedra") && ran.stderr.is_empty(),
+                "{ran:#?}"
+            );
+        }
+        let nodes = read_node(&folder.read("a.node")).expect("vertices");
+        let solid = read_ele(&folder.read("a.ele"), nodes).expect("tetrahedra");
+        assert_eq!(solid, foldfree::mesh::generate_solid(shape, 600));
+        for packed in ["b.node.gz", "b.ele.gz"] {
+            assert!(folder.read(packed).starts_with(&[0x1f, 0x8b]));
+        }
+    }
+    folder
+        .foldfree("generate hand --out hand.obj")
+        .fails(&["hand.obj", ".node"]);
+    folder
+        .foldfree("generate box --out no/such.node")
+        .fails(&["no/such.node"]);
+}
+
+#[test]
 fn parameterize_writes_a_map_that_check_accepts_and_a_report() {
     let folder = Folder::new("parameterize");
     folder

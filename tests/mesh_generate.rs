@@ -77,6 +77,10 @@ fn closed_shapes_face_outwards_and_open_ones_upwards() {
         }
         match shape {
             Shape::Torus | Shape::Sphere | Shape::RoundedCube => assert!(volume > 1.0, "{shape:?}"),
+            Shape::Sheet | Shape::RoundSheet => {
+                assert!(mesh.positions.iter().all(|p| p.z == 0.0));
+                assert!(up > 0.0);
+            }
             // Rolled onto a cylinder round the y axis, outside out.
             Shape::HilbertStrip => assert!(volume > 0.0),
             _ => assert!(up > 0.0, "{shape:?}"),

@@ -3,7 +3,7 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use foldfree::deformation::{DeformationMethod, DeformationOptions, Material};
-use foldfree::mesh::Shape;
+use foldfree::mesh::{Shape, SolidShape};
 use foldfree::parameterization::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use serde::de::DeserializeOwned;
 use std::path::PathBuf;
@@ -176,18 +176,42 @@ pub struct Check {
     pub quiet: bool,
 }
 
-/// Make a sample mesh.
+/// Make a sample mesh: a surface of triangles or a solid of tetrahedra.
 #[derive(Debug, Args)]
 pub struct Generate {
     /// Which.
-    #[arg(value_parser = PossibleValuesParser::new(Shape::ALL.map(Shape::name)).map(|n| shape(&n)))]
-    pub shape: Shape,
-    /// Approximate number of triangles.
-    #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
+    #[arg(value_parser = PossibleValuesParser::new(Sample::names()).try_map(|n| Sample::named(&n)))]
+    pub shape: Sample,
+    /// Approximate number of triangles, or of tetrahedra (at most 2 000 000 of these).
+    #[arg(long, visible_alias = "tetrahedra", value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(1..=20_000_000))]
     pub triangles: u32,
-    /// Where to: .obj, .off, .ply, .stl, .mesh, .msh or .vtk, also with .gz behind.
+    /// Where to: .obj, .off, .ply, .stl, .mesh, .msh or .vtk; a solid: .node (with .ele beside it), .mesh,
+    /// .msh or .vtk; also with .gz behind.
     #[arg(long, value_name = "OUT")]
     pub out: PathBuf,
+}
+
+/// A sample of either kind.
+#[derive(Debug, Clone, Copy)]
+pub enum Sample {
+    /// Of triangles.
+    Surface(Shape),
+    /// Of tetrahedra.
+    Solid(SolidShape),
+}
+
+impl Sample {
+    fn names() -> impl Iterator<Item = &'static str> {
+        let solids = SolidShape::ALL.into_iter().map(SolidShape::name);
+        Shape::ALL.into_iter().map(Shape::name).chain(solids)
+    }
+
+    fn named(name: &str) -> Result<Sample, String> {
+        let surface = Shape::from_name(name).map(Sample::Surface);
+        surface
+            .or_else(|| SolidShape::from_name(name).map(Sample::Solid))
+            .ok_or_else(|| format!("there is no shape {name}"))
+    }
 }
 
 const METHODS: &[&str] = &[
@@ -209,10 +233,6 @@ fn names<T: DeserializeOwned + Clone + Send + Sync + 'static>(
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(known)
         .try_map(|name| serde_json::from_value::<T>(serde_json::Value::String(name)))
-}
-
-fn shape(name: &str) -> Shape {
-    Shape::from_name(name).unwrap_or(Shape::BumpyCap)
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

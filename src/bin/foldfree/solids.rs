@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::files;
 use foldfree::mesh::SolidMesh;
-use foldfree::mesh::io::{self, Format, SolidFile, read_ele, read_node, write_node};
+use foldfree::mesh::io::{self, Format, SolidFile, read_ele, read_node, write_ele, write_node};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
@@ -82,12 +82,41 @@ pub fn write_deformed(path: &Path, rest: &SolidMesh, to: Vec<DVec3>) -> Result<(
     if beside(path, "node").is_some() {
         return files::write(path, &write_node(&to));
     }
-    let format = format(path)?;
     let solid = SolidMesh {
         positions: to,
         simplices: rest.simplices.clone(),
     };
-    let bytes = match io::write_solid(&solid, format) {
+    write_one_file(path, &solid)
+}
+
+/// Writes a solid: .node with .ele beside it, one file of both, or, in a format of surfaces, the boundary.
+/// Returns the names of the files.
+pub fn write_solid(path: &Path, solid: &SolidMesh) -> Result<String, Failure> {
+    let Some([node, ele]) = pair(path) else {
+        write_one_file(path, solid)?;
+        return Ok(path.display().to_string());
+    };
+    files::write(&node, &write_node(&solid.positions))?;
+    files::write(&ele, &write_ele(solid))?;
+    Ok(format!("{}, {}", node.display(), ele.display()))
+}
+
+/// The .node and the .ele file that a name of either stands for.
+fn pair(path: &Path) -> Option<[PathBuf; 2]> {
+    let text = path.to_string_lossy();
+    let (stem, packed) = match text.strip_suffix(".gz") {
+        Some(stem) => (stem, ".gz"),
+        None => (&*text, ""),
+    };
+    let stem = stem
+        .strip_suffix(".node")
+        .or_else(|| stem.strip_suffix(".ele"))?;
+    Some(["node", "ele"].map(|ending| PathBuf::from(format!("{stem}.{ending}{packed}"))))
+}
+
+fn write_one_file(path: &Path, solid: &SolidMesh) -> Result<(), Failure> {
+    let format = format(path)?;
+    let bytes = match io::write_solid(solid, format) {
         Some(bytes) => bytes,
         None => {
             let boundary = solid.boundary();

@@ -10,13 +10,14 @@ pub(super) fn hand(least_radius: f64) -> Implicit {
     let mut hand = Implicit::new(least_radius, 0.0);
     hand.join(
         0.0,
-        &[
-            &[
-                ball(-0.07, -1.06, 0.0, 0.165),
-                ball(-0.06, -0.62, 0.0, 0.135),
-            ],
-            &[ball(0.08, -1.06, 0.0, 0.165), ball(0.07, -0.62, 0.0, 0.135)],
-        ],
+        &[&[
+            ball(-0.07, -1.06, 0.0, 0.165),
+            ball(-0.06, -0.62, 0.0, 0.135),
+        ]],
+    );
+    hand.join(
+        0.12,
+        &[&[ball(0.08, -1.06, 0.0, 0.165), ball(0.07, -0.62, 0.0, 0.135)]],
     );
     // The palm: one cone for each metacarpal, hollowed a little by setting the outer ones forward.
     hand.join(
@@ -49,7 +50,7 @@ pub(super) fn hand(least_radius: f64) -> Implicit {
         (ball(-0.285, 0.16, 0.01, 0.0), -13.0, 0.66, 0.092),
         (ball(-0.095, 0.22, -0.01, 0.0), -3.5, 0.74, 0.095),
         (ball(0.095, 0.19, -0.01, 0.0), 6.0, 0.68, 0.090),
-        (ball(0.275, 0.09, 0.01, 0.0), 17.0, 0.53, 0.080),
+        (ball(0.275, 0.09, 0.01, 0.0), 17.0, 0.53, 0.085),
     ];
     for ((knuckle, _), tilt, length, radius) in fingers {
         let (sin, cos) = f64::to_radians(tilt).sin_cos();
@@ -80,26 +81,26 @@ pub(super) fn creature(least_radius: f64) -> Implicit {
     let arms: Vec<Vec<Ball>> = (0..ARMS)
         .map(|arm| {
             let angle = TAU * (arm as f64 + 0.5) / ARMS as f64;
-            // Neighbours wave to different sides and have different lengths.
-            let (wave, reach) = [(0.34, 0.86), (-0.28, 0.76)][arm % 2];
+            // All sweep the same way, so that they keep apart; every other one is shorter.
+            let reach = [0.92, 0.80][arm % 2];
             (0..=BONES)
                 .map(|bone| {
                     let s = bone as f64 / BONES as f64;
                     let drop = (1.0 - s / 0.5).max(0.0);
                     let curl = (s - 0.62).max(0.0) / 0.38;
-                    let (sin, cos) = (angle + wave * (1.6 * PI * s).sin()).sin_cos();
+                    let (sin, cos) = (angle + 0.24 * (1.6 * PI * s).sin()).sin_cos();
                     let out = 0.14 + reach * s * (1.0 - 0.16 * curl);
                     let up = -0.36 + 0.40 * drop * drop + 0.26 * curl * curl;
-                    (DVec3::new(out * sin, up, out * cos), 0.145 - 0.085 * s)
+                    (DVec3::new(out * sin, up, out * cos), 0.128 - 0.066 * s)
                 })
                 .collect()
         })
         .collect();
     for arm in &arms {
-        creature.join(0.10, &[arm]);
+        creature.join(0.06, &[arm]);
     }
-    let eye = |x| [(DVec3::new(x, 0.36, 0.255), 0.085)];
-    creature.join(0.03, &[&eye(-0.16), &eye(0.16)]);
+    let eye = |x| [(DVec3::new(x, 0.38, 0.235), 0.11)];
+    creature.join(0.06, &[&eye(-0.155), &eye(0.155)]);
     creature
 }
 
@@ -109,18 +110,18 @@ pub(super) fn letters(least_radius: f64) -> Implicit {
     const SLANT: f64 = 0.16;
     const TURN: usize = 10;
     let ball = |x: f64, y: f64| (DVec3::new(x + SLANT * y, y, 0.0), STROKE);
-    let mut letters = Implicit::new(least_radius, 0.07);
-    let mut f = |x: f64, top: f64, hook: f64, blend: f64| {
+    let mut letters = Implicit::new(least_radius, 0.04);
+    let mut f = |x: f64, top: f64, hook: f64| {
         let mut stem = vec![ball(x, -0.88)];
         // The hook: from the stem over the top and a little down again.
         stem.extend((0..=TURN).map(|step| {
             let (sin, cos) = (0.86 * PI * step as f64 / TURN as f64).sin_cos();
             ball(x + hook * (1.0 - cos), top - hook + hook * sin)
         }));
-        letters.join(blend, &[&stem]);
+        letters.join(0.0, &[&stem]);
     };
-    f(-0.36, 0.66, 0.21, 0.0);
-    f(0.30, 0.88, 0.25, 0.0);
-    letters.join(0.06, &[&[ball(-0.68, 0.14), ball(0.66, 0.14)]]);
+    f(-0.46, 0.64, 0.18);
+    f(0.26, 0.88, 0.25);
+    letters.join(0.06, &[&[ball(-0.78, 0.14), ball(0.60, 0.14)]]);
     letters
 }

@@ -124,7 +124,7 @@ impl Implicit {
 
     /// Negative inside; |value| is at most the distance to the surface.
     pub fn value(&self, mut point: DVec3) -> f64 {
-        point.z = (point.z.abs() - self.slab).max(0.0);
+        point.z -= point.z.clamp(-self.slab, self.slab);
         let mut value = f64::INFINITY;
         for group in &self.groups {
             // Too far away to change anything.

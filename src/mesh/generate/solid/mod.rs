@@ -106,16 +106,6 @@ impl SolidShape {
             }
         }
     }
-
-    /// The function of an implicit solid whose parts are nowhere thinner than `least_radius`.
-    fn implicit(self, least_radius: f64) -> Option<Implicit> {
-        match self {
-            SolidShape::Hand => Some(figures::hand(least_radius)),
-            SolidShape::Creature => Some(figures::creature(least_radius)),
-            SolidShape::Letters => Some(figures::letters(least_radius)),
-            _ => None,
-        }
-    }
 }
 
 /// Makes a solid of approximately that many tetrahedra, in one piece, its box centred at the origin and
@@ -131,7 +121,9 @@ pub fn generate_solid(shape: SolidShape, tetrahedra: usize) -> SolidMesh {
         SolidShape::Beam => grid::bar(12.0, tetrahedra),
         SolidShape::Box => grid::bar(1.0, tetrahedra),
         SolidShape::Disk => grid::disk(tetrahedra),
-        SolidShape::Hand | SolidShape::Creature | SolidShape::Letters => stuffed(shape, tetrahedra),
+        SolidShape::Hand => stuffed(figures::hand, 0.33, tetrahedra),
+        SolidShape::Creature => stuffed(figures::creature, 0.56, tetrahedra),
+        SolidShape::Letters => stuffed(figures::letters, 0.37, tetrahedra),
     };
     let mut bounds = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     for &position in &mesh.positions {
@@ -150,44 +142,46 @@ fn wish(tetrahedra: usize) -> f64 {
     (tetrahedra as f64).min(2e6)
 }
 
-/// Looks for the spacing that gives the wanted number.
-fn stuffed(shape: SolidShape, tetrahedra: usize) -> SolidMesh {
+/// Looks for the spacing that gives the wanted number. `figure` makes the function of a solid whose
+/// parts are nowhere thinner than a radius; `volume` is about that of the solid.
+fn stuffed(figure: fn(f64) -> Implicit, volume: f64, tetrahedra: usize) -> SolidMesh {
     // A lattice finds every part of a round stroke whose radius is more than √5/4 of the spacing, the
     // distance from its vertices that a point can have; a little more keeps the parts joined.
-    const THICKNESS: f64 = 0.62;
+    const THICKNESS: [f64; 3] = [0.75, 0.7, 0.8];
+    // Thicker than this, the parts would run into each other.
+    const THICKEST: f64 = 0.17;
     const CLOSE: f64 = 0.04;
     let wanted = wish(tetrahedra).max(100.0);
-    let fill = |spacing: f64| -> SolidMesh {
-        let solid = shape.implicit(THICKNESS * spacing).unwrap_or_default();
-        let mesh = stuff(|p| solid.value(p), solid.bounds(), spacing).unwrap_or_default();
+    let fill = |spacing: f64, thickness: f64, shift: f64| -> SolidMesh {
+        let solid = figure((thickness * spacing).min(THICKEST));
+        let shift = DVec3::new(0.13, 0.29, 0.41) * (shift.fract() * spacing);
+        let bounds = solid.bounds().map(|corner| corner + shift);
+        let mesh = stuff(|p| solid.value(p), bounds, spacing).unwrap_or_default();
         largest_piece(mesh)
     };
-    // The number grows with the inverse cube of the spacing, roughly: by that rule, but between the
-    // spacings that are known to give too many and too few.
-    let mut spacing = 0.12 * (2_000.0 / wanted).cbrt();
-    let (mut too_fine, mut too_coarse) = (0.0, f64::INFINITY);
-    let mut best = (f64::INFINITY, SolidMesh::default());
-    for _ in 0..12 {
-        let mesh = fill(spacing);
+    // The number grows with the inverse cube of the spacing, roughly. Where it jumps, because a part
+    // appears or breaks off, ever farther neighbours of the best spacing are tried, with other
+    // thicknesses and the lattice moved.
+    let mut spacing = (12.0 * volume / wanted).cbrt();
+    let mut best = (f64::INFINITY, spacing, SolidMesh::default());
+    for attempt in 0..30 {
+        let other = if attempt < 6 { 0 } else { attempt };
+        let mesh = fill(spacing, THICKNESS[other % 3], 0.1 * other as f64);
         let ratio = mesh.simplices.len().max(1) as f64 / wanted;
-        if ratio > 1.0 {
-            too_fine = spacing;
-        } else {
-            too_coarse = spacing;
-        }
         let miss = ratio.ln().abs();
         if miss < best.0 {
-            best = (miss, mesh);
+            best = (miss, spacing, mesh);
         }
         if best.0 < CLOSE {
             break;
         }
-        spacing *= ratio.cbrt().clamp(0.3, 3.0);
-        if !(spacing > too_fine && spacing < too_coarse) {
-            spacing = 0.5 * (too_fine + too_coarse);
-        }
+        spacing = match attempt {
+            0..6 => spacing * ratio.cbrt().clamp(0.5, 2.0),
+            _ if attempt % 2 == 0 => best.1 * (1.0 + 0.01 * (attempt - 4) as f64),
+            _ => best.1 * (1.0 - 0.01 * (attempt - 4) as f64),
+        };
     }
-    best.1
+    best.2
 }
 
 /// The piece with the most tetrahedra; of equal ones the first.
