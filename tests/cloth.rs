@@ -348,6 +348,13 @@ fn bad_cloth_is_named() {
             },
             "targetStiffness",
         ),
+        (
+            ClothOptions {
+                method: DeformationMethod::Lbfgs,
+                ..plain
+            },
+            "l-bfgs",
+        ),
     ] {
         let error = error(&mesh, &start, &[0], &options);
         assert!(error.contains(named), "{named}: {error}");

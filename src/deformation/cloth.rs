@@ -87,6 +87,12 @@ impl ClothOptions {
         if self.method == DeformationMethod::Lbfgs && self.limits.is_some() {
             return wrong("method", "l-bfgs cannot keep limits of the stretch");
         }
+        if self.method == DeformationMethod::Lbfgs && self.limits.is_some() {
+            return wrong(
+                "method",
+                "l-bfgs knows no hard limits: it needs limits to be none",
+            );
+        }
         self.energy().map(|_| ())
     }
 

@@ -1,8 +1,9 @@
 //! The arguments, as a person types them.
 
+use crate::relaxation::Relaxation;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use foldfree::deformation::{DeformationMethod, DeformationOptions, Material};
+use foldfree::deformation::{ClothOptions, DeformationOptions, Material};
 use foldfree::mesh::{Shape, SolidShape};
 use foldfree::parameterization::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use serde::de::DeserializeOwned;
@@ -24,6 +25,8 @@ pub enum Command {
     Parameterize(Parameterize),
     /// Deform an elastic solid under pins.
     Deform(Deform),
+    /// Let a cloth come to rest under its weight.
+    Cloth(Cloth),
     /// Check a map exactly: folds, overlaps, distortion.
     Check(Check),
     /// Make a sample mesh.
@@ -90,19 +93,6 @@ pub struct Deform {
     /// Where it starts: .node, .mesh, .msh or .vtk, also with .gz behind. May be inverted.
     #[arg(long, value_name = "I")]
     pub init: PathBuf,
-    /// Vertices held where they start: a text file of indices, the first vertex being 0.
-    #[arg(long, value_name = "P")]
-    pub pins: Option<PathBuf>,
-    /// Points that vertices are pulled to: a text file of lines `index x y z`. A pinned vertex is moved
-    /// to its point.
-    #[arg(long, value_name = "T")]
-    pub targets: Option<PathBuf>,
-    /// Hold the vertices of --targets at their points instead of pulling at them.
-    #[arg(long, requires = "targets")]
-    pub hard: bool,
-    /// How hard targets pull, relative to how hard the body holds on to a vertex.
-    #[arg(long, value_name = "K", default_value_t = DeformationOptions::default().target_stiffness, value_parser = positive)]
-    pub target_stiffness: f64,
     /// Elastic energy.
     #[arg(long, default_value = Material::NAMES[0], value_parser = PossibleValuesParser::new(Material::NAMES))]
     pub energy: String,
@@ -112,31 +102,9 @@ pub struct Deform {
     /// Poisson's ratio (the same).
     #[arg(long, value_name = "N", default_value_t = Material::POISSON)]
     pub poisson: f64,
-    /// How.
-    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs"]))]
-    pub method: DeformationMethod,
-    /// Stop after this many iterations; 0: the start is the result.
-    #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]
-    pub iterations: usize,
-    /// Stop when the change of the energy, relative to |E| + 1, is below this.
-    #[arg(long, value_name = "T", default_value_t = DeformationOptions::default().tolerance, value_parser = tolerance)]
-    pub tolerance: f64,
-    /// Threads; 0: as many as the machine has.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    pub threads: usize,
-    /// Write the deformed vertices (.node), the solid (.mesh, .msh, .vtk) or its surface (.obj, .off,
-    /// .ply, .stl), also with .gz behind.
-    #[arg(long, value_name = "OUT")]
-    pub out: Option<PathBuf>,
-    /// Write what happened, iteration by iteration, as JSON.
-    #[arg(long, value_name = "REPORT.json")]
-    pub report: Option<PathBuf>,
-    /// Compare with a solution, a .node (.mesh, .msh, .vtk) of the same vertices: ‖x − x*‖/‖x₀ − x*‖.
-    #[arg(long, value_name = "SOLUTION.node")]
-    pub reference: Option<PathBuf>,
-    /// Say nothing but errors.
-    #[arg(long, short)]
-    pub quiet: bool,
+    /// What it shares with cloth.
+    #[command(flatten)]
+    pub relaxation: Relaxation,
 }
 
 impl Deform {
@@ -146,10 +114,57 @@ impl Deform {
         let material = Material::named(&self.energy, self.young, self.poisson).unwrap_or_default();
         DeformationOptions {
             material,
-            method: self.method,
-            target_stiffness: self.target_stiffness,
-            tolerance: self.tolerance,
-            max_iterations: self.iterations,
+            method: self.relaxation.method,
+            target_stiffness: self.relaxation.target_stiffness,
+            tolerance: self.relaxation.tolerance,
+            max_iterations: self.relaxation.iterations,
+        }
+    }
+}
+
+/// Let a cloth come to rest under its weight; exit code 2 when it did not converge. Units are SI.
+#[derive(Debug, Args)]
+pub struct Cloth {
+    /// Rest shape: a mesh of triangles, also with .gz behind; INIT if left out.
+    #[arg(long, value_name = "R")]
+    pub rest: Option<PathBuf>,
+    /// Where it starts: a mesh of the same vertices, also with .gz behind.
+    #[arg(long, value_name = "I")]
+    pub init: PathBuf,
+    /// Young's modulus times thickness, in N/m.
+    #[arg(long, value_name = "K", default_value_t = ClothOptions::default().stretch, value_parser = positive)]
+    pub stretch: f64,
+    /// Bending stiffness, in N m.
+    #[arg(long, value_name = "D", default_value_t = ClothOptions::default().bending, value_parser = tolerance)]
+    pub bending: f64,
+    /// Mass, in kg/m².
+    #[arg(long, value_name = "M", default_value_t = ClothOptions::default().density, value_parser = tolerance)]
+    pub density: f64,
+    /// Gravity, in m/s²: three numbers with commas between.
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,-9.81", allow_hyphen_values = true, value_parser = numbers::<3>)]
+    pub gravity: [f64; 3],
+    /// Least and most stretch of any part, a number up to 1 and one from 1 on with a comma between (`inf`:
+    /// without limit).
+    #[arg(long, value_name = "LEAST,MOST", default_value = "0.95,1.05", value_parser = numbers::<2>)]
+    pub limits: [f64; 2],
+    /// What it shares with solids.
+    #[command(flatten)]
+    pub relaxation: Relaxation,
+}
+
+impl Cloth {
+    /// The library's options.
+    pub fn options(&self) -> ClothOptions {
+        ClothOptions {
+            stretch: self.stretch,
+            bending: self.bending,
+            density: self.density,
+            gravity: self.gravity,
+            limits: (self.limits != [0.0, f64::INFINITY]).then_some(self.limits),
+            method: self.relaxation.method,
+            target_stiffness: self.relaxation.target_stiffness,
+            tolerance: self.relaxation.tolerance,
+            max_iterations: self.relaxation.iterations,
         }
     }
 }
@@ -228,14 +243,23 @@ const STARTS: &[&str] = &[
 ];
 
 /// A parser for the kebab-case names of an option of the library.
-fn names<T: DeserializeOwned + Clone + Send + Sync + 'static>(
+pub fn names<T: DeserializeOwned + Clone + Send + Sync + 'static>(
     known: &'static [&'static str],
 ) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(known)
         .try_map(|name| serde_json::from_value::<T>(serde_json::Value::String(name)))
 }
 
-fn tolerance(text: &str) -> Result<f64, String> {
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let parse = |part: &str| part.trim().parse::<f64>().ok().filter(|x| !x.is_nan());
+    let parsed: Option<Vec<f64>> = text.split(',').map(parse).collect();
+    let wrong = || format!("{N} numbers with commas between are needed");
+    parsed
+        .and_then(|list| list.try_into().ok())
+        .ok_or_else(wrong)
+}
+
+pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(t) if t.is_finite() && t >= 0.0 => Ok(t),
         Ok(_) => Err("it must be finite and not negative".into()),
@@ -243,7 +267,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+pub fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         Ok(_) => Err("it must be finite and positive".into()),
@@ -251,7 +275,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-fn threads(text: &str) -> Result<usize, String> {
+pub fn threads(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {
         Ok(n) if n <= 1024 => Ok(n),
         Ok(_) => Err("at most 1024".into()),

@@ -1,10 +1,11 @@
 //! The command line: flatten a mesh, check a map, make a sample mesh.
 //!
-//! Exit code 0: done (`parameterize`: converged; `check`: nothing folds); 2: not (ran out of
+//! Exit code 0: done (`parameterize`, `deform`, `cloth`: converged; `check`: nothing folds); 2: not (ran out of
 //! iterations; the map folds); 1: an error, in one line on stderr.
 
 mod arguments;
 mod check;
+mod cloth;
 mod deform;
 mod failure;
 mod files;
@@ -13,6 +14,7 @@ mod handles;
 mod parameterize;
 mod progress;
 mod reference;
+mod relaxation;
 mod report;
 mod solids;
 
@@ -54,6 +56,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.command {
         Command::Parameterize(options) => parameterize::run(options),
         Command::Deform(options) => deform::run(options),
+        Command::Cloth(options) => cloth::run(options),
         Command::Check(options) => check::run(options),
         Command::Generate(options) => generate::run(options),
     }

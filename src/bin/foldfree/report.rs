@@ -90,9 +90,9 @@ impl From<&StepReport> for Iteration {
     }
 }
 
-/// The report of `deform`.
+/// The report of `deform` and of `cloth`, with their options.
 #[derive(Debug, Serialize)]
-pub struct DeformReport {
+pub struct DeformReport<O: Serialize> {
     pub program: &'static str,
     pub rest: String,
     pub init: String,
@@ -101,10 +101,13 @@ pub struct DeformReport {
     /// What made it converge.
     pub criterion: Option<String>,
     #[serde(serialize_with = "snake_keys")]
-    pub options: foldfree::deformation::DeformationOptions,
+    pub options: O,
     pub threads: usize,
     pub vertices: usize,
-    pub tetrahedra: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub triangles: Option<usize>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tetrahedra: Option<usize>,
     pub pins: usize,
     pub targets: usize,
     pub notes: Vec<String>,
@@ -112,7 +115,8 @@ pub struct DeformReport {
     /// Seconds of all iterations.
     pub seconds: f64,
     pub iterations: Vec<Iteration>,
-    #[serde(serialize_with = "snake_keys")]
+    /// Of a solid.
+    #[serde(serialize_with = "snake_keys", skip_serializing_if = "Option::is_none")]
     pub certificate: Option<SolidCertificate>,
     pub certificate_seconds: f64,
 }
