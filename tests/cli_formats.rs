@@ -109,7 +109,7 @@ fn the_wrong_kind_of_file_is_named() {
     ]);
     folder
         .foldfree("check solid.mesh")
-        .fails(&["solid.mesh", "no triangles"]);
+        .fails(&["solid.mesh", "--rest"]);
     folder.foldfree("deform --init surface.msh").fails(&[
         "surface.msh",
         "no tetrahedra",

@@ -93,6 +93,7 @@ fn every_material_by_two_methods() {
                 method,
                 tolerance: 1e-14,
                 max_iterations: 3000,
+                ..Default::default()
             };
             let begin = plain(material, &rest, &start, &pins);
             let done = solve(&mesh, (&start, &pins), &options);
@@ -131,6 +132,7 @@ fn small_strains_cost_the_same() {
                 method: DeformationMethod::Lbfgs,
                 tolerance: 1e-16,
                 max_iterations: 3000,
+                ..Default::default()
             };
             solve(&mesh, (&start, &pins), &options)
                 .solver()
@@ -227,7 +229,12 @@ fn stable_neo_hookean_unfolds() {
 }
 
 fn problem<'a>(rest: &'a RestShape, start: &'a [f64], pins: &'a [u32]) -> Problem<'a> {
-    Problem { rest, start, pins }
+    Problem {
+        rest,
+        start,
+        pins,
+        external: None,
+    }
 }
 
 fn flat(positions: &[DVec3]) -> Vec<f64> {

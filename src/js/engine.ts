@@ -7,7 +7,7 @@ import { guard } from './guard.js';
 import {
   dispose,
   type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
-  type ParameterizeOptions, type Result, type ShapeInfo, type SolidData, type SolidFormat, type SolverInfo,
+  type ParameterizeOptions, type Result, type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type SolverInfo,
   type Step, type StepReport, type Texture,
 } from './types.js';
 
@@ -217,6 +217,11 @@ export class Core {
   /** Checks rest shape, start and handles, and builds the solver. */
   deform(solid: CoreSolid, options: DeformOptions & { frames?: FramePrecision } = {}): CoreDeformation {
     return CoreDeformation.make(this.#bindings, solid, options);
+  }
+
+  /** Checks a deformation that came from anywhere: `positions` is n × 3, interleaved; `solid` is the rest shape. */
+  checkSolid(solid: CoreSolid, positions: Float64Array): SolidCertificate {
+    return guard(() => this.#bindings.checkSolid(solid.handle, positions));
   }
 
   /** The options of a deformation with the values they have when left out. */

@@ -7,7 +7,7 @@ import { Deformation, Solver, abortable } from './solver.js';
 import {
   dispose,
   type Certificate, type DeformOptions, type FramePrecision, type MeshData, type MeshFormat, type ParameterizeOptions,
-  type ShapeInfo, type SolidData, type SolidFormat,
+  type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat,
 } from './types.js';
 
 export { FoldfreeError } from './error.js';
@@ -143,6 +143,11 @@ export class Foldfree {
     const id = await mesh.inWorker();
     if (uv === undefined) return this.#client.call('checkCorners', { mesh: id, corners: cornerImages(mesh) });
     return this.#client.call('check', { mesh: id, uv });
+  }
+
+  /** Checks a deformation that came from anywhere: `positions` is n × 3, interleaved; `solid` is the rest shape. */
+  async checkSolid(solid: Solid, positions: Float64Array): Promise<SolidCertificate> {
+    return this.#client.call('checkSolid', { mesh: await solid.inWorker(), positions });
   }
 
   /** Bytes of wasm memory; it never shrinks, so this is also its peak. */

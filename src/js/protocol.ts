@@ -2,7 +2,7 @@
 import type { PlainError } from './error.js';
 import type {
   Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
-  SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
+  SolidCertificate, SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
 } from './types.js';
 
 /** What is known of the library once it is loaded. */
@@ -32,6 +32,7 @@ export interface Calls {
   deform: [{ mesh: number; solver: number; options: DeformOptions; frames: FramePrecision }, DeformInfo];
   setTargets: [{ solver: number; targets: Targets }, undefined];
   setField: [{ solver: number; field: Field }, undefined];
+  checkSolid: [{ mesh: number; positions: Float64Array }, SolidCertificate];
   deformed: [{ solver: number }, DeformResult];
   step: [{ solver: number }, Frame];
   run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, Frame];

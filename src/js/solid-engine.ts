@@ -130,9 +130,9 @@ export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
     }
   }
 
-  /** The newest positions in double precision. */
+  /** The newest positions in double precision, with their certificate. */
   result(): DeformResult {
-    return guard(() => ({ positions: this.#handle.positions() }));
+    return guard(() => ({ positions: this.#handle.positions(), certificate: this.#handle.certificate() }));
   }
 
   /** Gives its wasm memory back. */

@@ -184,7 +184,7 @@ export class Deformation extends Stepper<DeformStep> implements DeformInfo {
     await this.callWith('setField', { field });
   }
 
-  /** The newest positions in double precision. */
+  /** The newest positions in double precision, with their certificate. */
   result(): Promise<DeformResult> {
     return this.call('deformed');
   }

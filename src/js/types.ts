@@ -1,9 +1,11 @@
 // The types that the synchronous core and the worker client share.
 import type {
-  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, Start, StepReport,
+  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, SolidCertificate, Start, StepReport,
 } from './single/foldfree.js';
 
-export type { Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, Start, StepReport };
+export type {
+  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, SolidCertificate, Start, StepReport,
+};
 export type {
   BoundaryCrossing, Criterion, CutPolicy, DeformationMethod, EnergyKind, Material, Method, Phase, PhaseKind,
 } from './single/foldfree.js';
@@ -150,6 +152,8 @@ export interface DeformInfo {
 export interface DeformResult {
   /** n × 3, interleaved. */
   positions: Float64Array;
+  /** The exact checks of these positions. */
+  certificate: SolidCertificate;
 }
 
 /** `Symbol.dispose`, also where the engine does not have it yet (`using` needs it). */

@@ -175,6 +175,7 @@ function serve(port: Port): void {
     },
     setTargets: ({ solver, targets }) => void deformation(solver).setTargets(targets),
     setField: ({ solver, field }) => void deformation(solver).setField(field),
+    checkSolid: ({ mesh, positions }) => theCore().checkSolid(solid(mesh), positions),
     deformed: ({ solver }) => deformation(solver).result(),
     step: ({ solver }) => found(solvers, solver, 'solver').step(),
     async run({ solver: id, run: runId, maxIterations, minInterval }) {

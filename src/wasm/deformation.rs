@@ -90,6 +90,12 @@ impl WasmDeformation {
         Float32Array::from(self.inner.solver().inspect().weights.as_slice())
     }
 
+    /// The exact checks of the newest iterate.
+    #[wasm_bindgen(unchecked_return_type = "SolidCertificate")]
+    pub fn certificate(&self) -> Fallible<JsValue> {
+        to_js(&self.inner.certificate())
+    }
+
     /// What was mended or chosen, in words.
     #[wasm_bindgen(getter)]
     pub fn notes(&self) -> Vec<String> {

@@ -18,7 +18,7 @@ pub use deformation::WasmDeformation;
 pub use mesh::{WasmMesh, shapes};
 pub use options::{default_deformation_options, default_options, materials};
 pub use parameterization::{WasmParameterization, check_corners, check_map};
-pub use solid::{WasmSolid, solid_shapes};
+pub use solid::{WasmSolid, check_solid, solid_shapes};
 #[cfg(feature = "threads")]
 pub use wasm_bindgen_rayon::init_thread_pool;
 

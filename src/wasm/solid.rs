@@ -3,6 +3,7 @@
 use super::error::{Fallible, invalid_argument, thrown};
 use super::mesh::{ShapeInfo, flat3, positions3};
 use super::to_js;
+use crate::certificate::SolidCertificate;
 use crate::mesh::io::{self, Format};
 use crate::mesh::{MeshError, SolidMesh, SolidShape, generate_solid};
 use js_sys::{Float64Array, Uint32Array};
@@ -162,4 +163,12 @@ pub fn solid_shapes() -> Fallible<JsValue> {
         })
         .collect();
     to_js(&shapes)
+}
+
+/// Checks a deformation that came from anywhere: `positions` is n × 3, interleaved, one a vertex of `solid`,
+/// which is the rest shape.
+#[wasm_bindgen(js_name = checkSolid, unchecked_return_type = "SolidCertificate")]
+pub fn check_solid(solid: &WasmSolid, positions: &[f64]) -> Fallible<JsValue> {
+    let positions = positions3(positions)?;
+    to_js(&SolidCertificate::try_of_solid(&solid.mesh, &positions).map_err(thrown)?)
 }
