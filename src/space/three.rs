@@ -96,7 +96,9 @@ fn perpendicular<L: Lane>(n: Three<L>) -> Three<L> {
 
 /// F = U diag(σ) Vᵀ with proper rotations U and V, |σ| descending, only the last negative (for an
 /// inverted F): one-sided Jacobi (Hestenes 1958).
-#[inline(always)]
+// in WebAssembly the instruction set is the module's: one copy serves all kernels
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
     let zero = f[0][0].lift(0.0);
     let one = f[0][0].lift(1.0);
@@ -165,7 +167,9 @@ pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
 
 /// Eigenvalues, descending, and a proper rotation of eigenvectors of the symmetric matrix
 /// (xx, yy, zz, xy, xz, yz): Jacobi (1846).
-#[inline(always)]
+// in WebAssembly the instruction set is the module's: one copy serves all kernels
+#[cfg_attr(target_arch = "wasm32", inline(never))]
+#[cfg_attr(not(target_arch = "wasm32"), inline(always))]
 pub fn eigen<L: Lane>(s: [L; 6]) -> (Three<L>, Columns<L>) {
     let zero = s[0].lift(0.0);
     let mut d = [s[0], s[1], s[2]];
