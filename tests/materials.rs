@@ -179,6 +179,7 @@ fn the_dirichlet_minimum_is_harmonic() {
             method,
             tolerance: 1e-15,
             max_iterations: iterations,
+            ..Default::default()
         };
         let done = solve(&mesh, (&start, &pins), &options);
         for (p, q) in done.positions().iter().zip(&mesh.positions) {
