@@ -18,25 +18,18 @@ impl Plane {
     }
 }
 
-/// One corner of a triangle on its way to the graphics card: position, colour, which edges not to draw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[repr(C)]
-pub struct Corner {
-    /// Position, x y z.
-    pub at: [f32; 3],
-    /// Where on the ramp; below 0 inverted, above 1 clamped.
-    pub value: f32,
-    /// Bit k set: the edge opposite to corner k of its triangle is not drawn.
-    pub hidden: f32,
-}
+/// One corner of a triangle on its way to the graphics card: x y z, where on the ramp (below 0
+/// inverted, above 1 clamped), and which edges not to draw (bit k: the one opposite to corner k).
+pub type Corner = [f32; 5];
 
 /// A corner at `p`.
 pub fn corner(p: Vec3, value: f32, hidden: f32) -> Corner {
-    Corner {
-        at: p.to_array(),
-        value,
-        hidden,
-    }
+    [p.x, p.y, p.z, value, hidden]
+}
+
+/// Where a corner is.
+pub fn place(corner: &Corner) -> Vec3 {
+    Vec3::from_slice(corner)
 }
 
 /// The polygon in which a plane cuts a tetrahedron: three or four points, in order; none if it does
@@ -131,7 +124,7 @@ mod tests {
             .0
             .iter()
             .map(|t| {
-                let [a, b, c] = t.map(|c| Vec3::from_array(c.at));
+                let [a, b, c] = t.map(|c| place(&c));
                 0.5 * (b - a).cross(c - a).length()
             })
             .sum()
@@ -161,7 +154,7 @@ mod tests {
                     "{normal} {at}: {}",
                     area(&out)
                 );
-                let on = |c: &Corner| plane.height(Vec3::from_array(c.at)).abs() < 1e-6;
+                let on = |c: &Corner| plane.height(place(c)).abs() < 1e-6;
                 assert!(out.iter().all(on));
             }
         }
@@ -193,7 +186,7 @@ mod tests {
         let tetrahedra = tetrahedra.as_chunks::<4>().0;
         let values = [0.1, -1.0, 0.2, 0.3, -1.0];
         let upright = cut_faces(tetrahedra, &single, &values, plane, &mut met, &mut out);
-        assert!(out[..upright].iter().all(|c| c.value >= 0.0));
-        assert!(!out[upright..].is_empty() && out[upright..].iter().all(|c| c.value < 0.0));
+        assert!(out[..upright].iter().all(|c| c[3] >= 0.0));
+        assert!(!out[upright..].is_empty() && out[upright..].iter().all(|c| c[3] < 0.0));
     }
 }

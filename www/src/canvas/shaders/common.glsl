@@ -9,9 +9,13 @@ uniform vec3 u_accent;
 uniform vec3 u_outline;
 uniform vec3 u_vermilion;
 
+// One of the ramps: row 0 cividis, row 1 for quantities with a middle.
+vec3 ramp_at(float t, float row) {
+    return texture(u_ramp, vec2(t * (255.0 / 256.0) + 0.5 / 256.0, 0.25 + 0.5 * row)).rgb;
+}
+
 vec3 ramp(float distortion) {
-    float t = min(log(max(distortion, 1.0)) / u_end, 1.0);
-    return texture(u_ramp, vec2(t * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+    return ramp_at(min(log(max(distortion, 1.0)) / u_end, 1.0), 0.0);
 }
 
 // Diagonal stripes, 6 points apart: never only a colour.
