@@ -74,6 +74,7 @@ pub fn curve_style(method: &str) -> CurveStyle {
         "r-admm" => ([0, 128, 96], [0, 178, 134], &[7.0, 3.0]),
         "w-admm" => ([170, 110, 0], [230, 159, 0], &[3.0, 3.0]),
         "admm-pd" => ([110, 114, 120], [160, 165, 172], &[1.5, 3.0]),
+        "l-bfgs" => ([126, 96, 62], [196, 166, 128], &[9.0, 3.0, 3.0, 3.0]),
         "arap" => ([164, 76, 130], [204, 121, 167], &[7.0, 3.0, 1.5, 3.0]),
         _ => ([90, 94, 100], [180, 184, 190], &[]),
     };
@@ -200,7 +201,7 @@ mod tests {
 
     #[test]
     fn solver_curves_are_visible_and_distinct() {
-        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "arap"];
+        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "arap"];
         for (i, a) in methods.iter().enumerate() {
             assert!(contrast(curve_style(a).light, LIGHT.ground) >= 3.0, "{a}");
             assert!(contrast(curve_style(a).dark, DARK.ground) >= 3.0, "{a}");

@@ -10,6 +10,7 @@ use crate::distortion::RestShapes;
 use crate::history::{Frames, Record, Run};
 use crate::layout::View;
 use crate::outline;
+use crate::words::{Nouns, SOLID, SURFACE};
 
 /// Memory for the iterates of one run.
 const FRAME_BUDGET: usize = 192 << 20;
@@ -333,6 +334,11 @@ impl Bench {
             hover: self.hover,
             tint: if self.tinted { 0.62 } else { 0.0 },
         }
+    }
+
+    /// What things are called on this bench.
+    pub fn nouns(&self) -> Nouns {
+        if self.body.is_some() { SOLID } else { SURFACE }
     }
 
     /// Inverted or collapsed elements of the iterate on show, as drawn.

@@ -1,4 +1,4 @@
-//! Energy, worst distortion and inverted triangles against iteration or time, on a log scale.
+//! Energy, worst distortion and inverted elements against iteration or time, on a log scale.
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
@@ -117,7 +117,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             painter.extend(Shape::dashed_line(piece, Stroke::new(1.2, quiet), 5.0, 3.0));
         }
         if let Some(p) = worst.iter().rev().find_map(|piece| piece.last()) {
-            ends.push((p.y, "worst distortion", quiet));
+            ends.push((p.y, bench.nouns().worst, quiet));
         }
         inverted(&painter, &frame, records);
         if let Some(last) = records.last() {
@@ -148,7 +148,7 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     } else if gap {
         "(E − lowest) / lowest"
     } else {
-        energy_caption(&bench.energy)
+        energy_caption(&bench.energy, bench.body.is_some())
     };
     let horizontal = if bench.plot_seconds {
         "seconds"
@@ -325,7 +325,7 @@ fn draw(
     }
 }
 
-/// The count of inverted triangles as a stepped line with a dot at every iterate while they are few.
+/// The count of inverted elements as a stepped line with a dot at every iterate while they are few.
 fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
     let ink = style::colour(VERMILION);
     let place = |r: &Record| {
@@ -464,10 +464,11 @@ fn cursor(ui: &mut egui::Ui, rect: Rect, frame: &Frame, bench: &mut Bench) {
         );
         let worst = number(r.worst_distortion(), 4);
         let text = format!(
-            "iteration {} · {} s\nenergy {}\nworst distortion {worst}\n{} inverted",
+            "iteration {} · {} s\nenergy {}\n{} {worst}\n{} inverted",
             r.iteration,
             number(r.seconds, 3),
             number(r.energy, 6),
+            bench.nouns().worst,
             r.inverted
         );
         response.on_hover_text_at_pointer(text);
