@@ -47,12 +47,18 @@ function arrange() {
 /** Shows one view, on a phone. */
 function choose(view) {
   tab = view;
+  document.body.dataset.view = view;
   for (const button of document.querySelectorAll('[role="tab"]')) {
     const on = button.dataset.view === view;
     button.setAttribute('aria-selected', String(on));
     button.tabIndex = on ? 0 : -1;
   }
   arrange();
+}
+
+/** The names of the views, on a phone's tabs. */
+export function nameViews(names) {
+  for (const button of document.querySelectorAll('[role="tab"]')) button.textContent = names[button.dataset.view];
 }
 
 /** Views only, text at double size; or back. */
@@ -85,6 +91,7 @@ export function connectViews() {
     choose(next.dataset.view);
     next.focus();
   });
+  document.body.dataset.view = tab;
   narrow.addEventListener('change', arrange);
   addEventListener('resize', arrange);
 }
