@@ -47,7 +47,7 @@ function arrange() {
 /** Shows one view, on a phone. */
 function choose(view) {
   tab = view;
-  document.body.dataset.view = view;
+  document.body.dataset.tab = view;
   for (const button of document.querySelectorAll('[role="tab"]')) {
     const on = button.dataset.view === view;
     button.setAttribute('aria-selected', String(on));
@@ -91,7 +91,7 @@ export function connectViews() {
     choose(next.dataset.view);
     next.focus();
   });
-  document.body.dataset.view = tab;
+  document.body.dataset.tab = tab;
   narrow.addEventListener('change', arrange);
   addEventListener('resize', arrange);
 }

@@ -33,13 +33,17 @@ vec3 clamped(vec3 colour) {
     return mix(vec3(0.35, 0.28, 0.0), colour, smoothstep(0.7, 1.2, d));
 }
 
-vec3 wires(vec3 colour, vec3 edge, float weight) {
+vec3 wires(vec3 colour, vec3 edge, float weight, vec3 ink) {
     vec3 width = fwidth(edge);
     vec3 near = smoothstep(vec3(0.0), width * 1.1 * u_pixel, edge);
     float line = 1.0 - min(near.x, min(near.y, near.z));
     // A triangle of a few pixels would be all line: fade.
     float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
-    return mix(colour, u_outline, line * weight * smoothstep(3.0, 12.0, size));
+    return mix(colour, ink, line * weight * smoothstep(3.0, 12.0, size));
+}
+
+vec3 wires(vec3 colour, vec3 edge, float weight) {
+    return wires(colour, edge, weight, u_outline);
 }
 
 // Hatched, with a dark outline wherever there is room for one.

@@ -26,6 +26,10 @@ void main() {
     c *= mix(light, 1.0, u_flat);
     float rim = pow(1.0 - clamp(n.z, 0.0, 1.0), 2.5);
     float opacity = bad && u_opacity < 1.0 ? max(u_opacity, 0.75) : mix(u_opacity, u_rim, rim);
-    if (!bad) c = wires(c, v_edge, u_wire);
+    if (!bad) {
+        // Edges on dark colours are light.
+        float bright = dot(c, vec3(0.3, 0.6, 0.1));
+        c = wires(c, v_edge, u_wire, mix(vec3(0.80), u_outline, smoothstep(0.22, 0.38, bright)));
+    }
     colour = vec4(c * opacity, opacity);
 }

@@ -11,9 +11,6 @@ use crate::solid::pick::{Lens, nearest_in_front};
 /// Handles of more vertices than this have a square of their own in their middle.
 const FEW: usize = 3;
 
-/// Lines to targets drawn at most; of more, one for all.
-const MOST_LINES: usize = 60;
-
 /// How near a pointer must come to a square, in points.
 const REACH: f32 = 11.0;
 
@@ -96,6 +93,7 @@ pub fn draw(
     }
 }
 
+/// One mark for a handle of many vertices, one a vertex elsewhere.
 fn targets(
     painter: &Painter,
     body: &Body,
@@ -105,28 +103,26 @@ fn targets(
 ) {
     let ink = style::colour(bench.theme.ink);
     let ground = style::colour(bench.theme.ground);
-    let away: Vec<(Pos2, Pos2)> = body
-        .targets
-        .iter()
-        .map(|&(v, target)| (place(at(positions, v)), place(target)))
-        .filter(|(vertex, target)| vertex.distance(*target) > 3.5)
-        .collect();
-    let mark = |from: Pos2, to: Pos2| {
-        painter.line_segment([from, to], Stroke::new(1.0, ink));
-        painter.circle(to, 4.5, ground, Stroke::new(1.4, ink));
+    let mark = |from: Vec3, to: Vec3| {
+        let (from, to) = (place(from), place(to));
+        if from.distance(to) > 3.5 {
+            painter.line_segment([from, to], Stroke::new(1.0, ink));
+            painter.circle(to, 4.5, ground, Stroke::new(1.4, ink));
+        }
     };
-    if away.len() <= MOST_LINES {
-        away.iter().for_each(|(from, to)| mark(*from, *to));
-        return;
+    // Targets come handle by handle, then those of single vertices.
+    let mut rest = body.targets.as_slice();
+    for handle in &body.handles {
+        let (own, after) = rest.split_at(handle.len().min(rest.len()));
+        rest = after;
+        if own.len() > FEW {
+            let sum: Vec3 = own.iter().map(|(_, target)| *target).sum();
+            mark(middle(handle, positions), sum / own.len() as f32);
+        } else {
+            own.iter().for_each(|(v, to)| mark(at(positions, *v), *to));
+        }
     }
-    let mean = |which: fn(&(Pos2, Pos2)) -> Pos2| {
-        let sum = away
-            .iter()
-            .map(|p| which(p).to_vec2())
-            .fold(vec2(0.0, 0.0), |a, b| a + b);
-        (sum / away.len() as f32).to_pos2()
-    };
-    mark(mean(|p| p.0), mean(|p| p.1));
+    rest.iter().for_each(|(v, to)| mark(at(positions, *v), *to));
 }
 
 /// Draws the rubber band.

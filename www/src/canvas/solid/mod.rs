@@ -251,6 +251,10 @@ impl Bench {
     /// tetrahedra (m×4), skin triangles (k×3), indices in range.
     pub fn set_solid(&mut self, positions: &[f64], tetrahedra: &[u32], skin: &[u32]) {
         let before = self.body.take();
+        if before.is_none() {
+            // What is inside shows through a plain skin best.
+            self.tinted = false;
+        }
         let solid = Solid::new(positions, tetrahedra, skin);
         let same = before.as_ref().is_some_and(|b| {
             b.solid.tetrahedra == solid.tetrahedra && b.solid.vertices == solid.vertices
