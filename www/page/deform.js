@@ -19,6 +19,7 @@ const ELASTIC = ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff'];
 export class Deform extends Mode {
   static accepts = '.mesh,.msh,.vtk,.node,.ele,.gz';
   static dropHere = 'Drop a MESH, MSH or VTK file, or a NODE file with its ELE file, to deform it';
+  static first = 'shape'; // the view a phone shows
   static views = { map: 'Cut', shape: 'Solid', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('deform');
   source = { solid: this.wanted.solid, tetrahedra: this.wanted.tetrahedra };

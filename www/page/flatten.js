@@ -13,6 +13,7 @@ const DIRECT = ['lscm', 'harmonic', 'tutte'];
 export class Flatten extends Mode {
   static accepts = '.obj,.off,.gz';
   static dropHere = 'Drop an OBJ or OFF file to flatten it';
+  static first = 'map'; // the view a phone shows
   static views = { map: 'Map', shape: 'Surface', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('flatten'); // what the controls say
   source = { sample: this.wanted.sample, triangles: this.wanted.triangles }; // what is, or will be, on the bench

@@ -41,7 +41,7 @@ function dress() {
   }
   $('file').accept = accepts;
   $('drop').firstElementChild.textContent = dropHere;
-  nameViews(views);
+  nameViews(views, active.constructor.first);
   page.canvas?.mode(active.name);
 }
 

@@ -56,9 +56,10 @@ function choose(view) {
   arrange();
 }
 
-/** The names of the views, on a phone's tabs. */
-export function nameViews(names) {
+/** The names of the views on a phone's tabs, and the one that is shown first. */
+export function nameViews(names, first) {
   for (const button of document.querySelectorAll('[role="tab"]')) button.textContent = names[button.dataset.view];
+  choose(first);
 }
 
 /** Views only, text at double size; or back. */
@@ -91,7 +92,6 @@ export function connectViews() {
     choose(next.dataset.view);
     next.focus();
   });
-  document.body.dataset.tab = tab;
   narrow.addEventListener('change', arrange);
   addEventListener('resize', arrange);
 }

@@ -34,7 +34,7 @@ vec3 clamped(vec3 colour) {
 }
 
 vec3 wires(vec3 colour, vec3 edge, float weight, vec3 ink) {
-    vec3 width = fwidth(edge);
+    vec3 width = max(fwidth(edge), vec3(1e-5)); // an edge that is not drawn has none
     vec3 near = smoothstep(vec3(0.0), width * 1.1 * u_pixel, edge);
     float line = 1.0 - min(near.x, min(near.y, near.z));
     // A triangle of a few pixels would be all line: fade.
@@ -48,7 +48,7 @@ vec3 wires(vec3 colour, vec3 edge, float weight) {
 
 // Hatched, with a dark outline wherever there is room for one.
 vec3 inverted(vec3 edge) {
-    vec3 width = fwidth(edge);
+    vec3 width = max(fwidth(edge), vec3(1e-5)); // an edge that is not drawn has none
     vec3 near = smoothstep(width * 0.5 * u_pixel, width * 1.3 * u_pixel, edge);
     float line = 1.0 - min(near.x, min(near.y, near.z));
     float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
