@@ -59,7 +59,7 @@ export class DeformSession {
   async build({ source, solid = this.#solid, settings, pins, start, targets, fresh }) {
     const generation = ++this.#generation;
     this.stop();
-    await this.#running;
+    await this.#still();
     const solver = await this.#foldfree.deform(solid, {
       ...settings, pins, start, targets, maxIterations: MOST_ITERATIONS, field: 'stress', frames: 'f32',
     });
@@ -87,6 +87,7 @@ export class DeformSession {
 
   /** One step; resolves with it, or with undefined when there is none to make. */
   async step() {
+    await this.#still();
     const solver = this.#solver;
     if (!solver || this.finished) return undefined;
     const step = await solver.step();
@@ -102,6 +103,7 @@ export class DeformSession {
    * as it takes it, and the numbers of those between.
    */
   async run(onFrame) {
+    await this.#still();
     const solver = this.#solver;
     if (!solver || this.finished) return;
     const take = async (frame, reports) => {
@@ -115,6 +117,16 @@ export class DeformSession {
     };
     this.#running = solver.run({ onFrame: take }).finally(() => { this.#running = undefined; });
     await this.#running;
+  }
+
+  /** Waits until no run is under way. */
+  async #still() {
+    while (this.#running) await this.#running.catch(() => {});
+  }
+
+  /** Nothing is held: there is nothing to solve until a solver is built with pins. */
+  suspend() {
+    this.#status = 'suspended';
   }
 
   /** Ends a run after its current step. */
@@ -135,7 +147,7 @@ export class DeformSession {
       this.#targets = undefined;
       const solver = this.#solver;
       await solver.setTargets(targets);
-      if (solver === this.#solver) [this.#status, this.certificate] = ['running', undefined];
+      if (this.#status !== 'suspended' && solver === this.#solver) [this.#status, this.certificate] = ['running', undefined];
     }
   }
 
@@ -155,6 +167,11 @@ export class DeformSession {
     if (step.status === 'running') return;
     const { certificate } = await solver.result();
     if (solver === this.#solver && this.finished) this.certificate = certificate;
+  }
+
+  /** The newest positions in double precision (n×3). */
+  async result() {
+    return (await this.#solver.result()).positions;
   }
 
   /** Everything a person would want to plot elsewhere. */

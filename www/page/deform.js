@@ -3,7 +3,7 @@ import { isDefault, readAddress, writeAddress } from './address.js';
 import { preparedSolid } from './canvas.js';
 import { DeformControls } from './deform-controls.js';
 import { DeformSession } from './deform-session.js';
-import { readSolidFiles, save } from './files.js';
+import { medit, readSolidFiles, save } from './files.js';
 import { Handles } from './handles.js';
 import { Mode, nextFrame } from './mode.js';
 import { clearNotice, describe, notice } from './notice.js';
@@ -139,6 +139,7 @@ export class Deform extends Mode {
     const pins = this.handles.pins();
     if (pins.length === 0) {
       this.pause();
+      this.session.suspend();
       notice('Nothing is held', 'Pin something before it can go on: click a vertex, or drag a box around some with Shift.', { plain: true });
       return false;
     }
@@ -190,7 +191,7 @@ export class Deform extends Mode {
       await this.beforeStep();
       await this.session.run(async (step, skipped) => {
         skipped.forEach((record) => this.bench.pushNumbers(record));
-        this.#tick(skipped.length + 1);
+        this.#tick(skipped.length);
         this.took(step);
         await Promise.all([this.beforeStep(skipped.length + 1), nextFrame()]);
         if (!mayGo()) this.session.stop();
@@ -206,7 +207,7 @@ export class Deform extends Mode {
 
   took(step) {
     if (this.records !== this.session.records) this.records = this.session.records;
-    if (!this.hurried) this.#tick(1);
+    this.#tick(1);
     super.took(step);
   }
 
@@ -280,9 +281,11 @@ export class Deform extends Mode {
         if (this.#scene && name === 'grab-handle' && this.#scene.motion?.handle === value) this.#scene.motion = undefined;
         return this.#drawHandles();
       case 'drag':
+        if (!this.handles.dragging) return;
         this.handles.drag(value);
         return void this.#aim();
       case 'drop':
+        if (!this.handles.dragging) return;
         this.handles.drop();
         return void this.#aim();
       default:
@@ -428,6 +431,7 @@ export class Deform extends Mode {
   get exports() {
     const name = (this.source.name ?? this.source.solid).replace(/\.(mesh|msh|vtk|node)(\.gz)?$/i, '');
     return {
+      'export-solid': async () => save(medit(await this.session.result(), this.session.solid.tetrahedra), `${name}-${this.wanted.method}.mesh`, 'text/plain'),
       'export-trace': async () => save(`${JSON.stringify(await this.session.trace(), null, 1)}\n`, `${name}-${this.wanted.method}.json`, 'application/json'),
     };
   }

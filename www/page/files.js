@@ -20,7 +20,7 @@ async function unpacked(file, formats, kinds) {
 
 /** Reads a surface: `{ name, format, bytes }`. */
 export async function readMeshFile(file) {
-  return { name: file.name, ...(await unpacked(file, ['obj', 'off'], 'OBJ and OFF')) };
+  return { name: file.name, ...(await unpacked(file, ['obj', 'off', 'ply', 'stl', 'mesh', 'msh', 'vtk'], 'OBJ, OFF, PLY, STL, MESH, MSH and VTK')) };
 }
 
 /** Reads a solid: `{ name, format, bytes, elements }`; a NODE file wants its ELE file beside it. */
@@ -32,6 +32,16 @@ export async function readSolidFiles(files) {
   if (!first) throw new Error('an ELE file needs its NODE file: open both together');
   if (first.format === 'node' && !elements) throw new Error('a NODE file needs its ELE file: open both together');
   return first.format === 'node' ? { ...first, elements: elements.bytes } : first;
+}
+
+/** A solid as a MEDIT .mesh file. */
+export function medit(positions, tetrahedra) {
+  const lines = ['MeshVersionFormatted 2', 'Dimension 3', 'Vertices', String(positions.length / 3)];
+  for (let i = 0; i < positions.length; i += 3) lines.push(`${positions[i]} ${positions[i + 1]} ${positions[i + 2]} 0`);
+  lines.push('Tetrahedra', String(tetrahedra.length / 4));
+  for (let i = 0; i < tetrahedra.length; i += 4) lines.push(`${Array.from(tetrahedra.subarray(i, i + 4), (v) => v + 1).join(' ')} 0`);
+  lines.push('End', '');
+  return lines.join('\n');
 }
 
 /** Lets the browser save `content` under `name`. */

@@ -11,8 +11,8 @@ const $ = (id) => document.getElementById(id);
 const DIRECT = ['lscm', 'harmonic', 'tutte'];
 
 export class Flatten extends Mode {
-  static accepts = '.obj,.off,.gz';
-  static dropHere = 'Drop an OBJ or OFF file to flatten it';
+  static accepts = '.obj,.off,.ply,.stl,.mesh,.msh,.vtk,.gz';
+  static dropHere = 'Drop a surface to flatten it: OBJ, OFF, PLY, STL, MESH, MSH or VTK';
   static first = 'map'; // the view a phone shows
   static views = { map: 'Map', shape: 'Surface', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('flatten'); // what the controls say
@@ -186,7 +186,7 @@ export class Flatten extends Mode {
 
   /** What can be exported: the ids of the menu's buttons and what they do. */
   get exports() {
-    const name = (this.source.name ?? this.source.sample).replace(/\.(obj|off)(\.gz)?$/i, '');
+    const name = (this.source.name ?? this.source.sample).replace(/\.(obj|off|ply|stl|mesh|msh|vtk)(\.gz)?$/i, '');
     const { method } = this.wanted;
     return {
       'export-obj': async () => save(await this.session.exportObj(), `${name}-${method}.obj`, 'model/obj'),

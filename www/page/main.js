@@ -124,7 +124,7 @@ function connect() {
     if (files.length) page.active.openFiles(files);
   });
   acceptDrops($('drop'), (files) => page.active.openFiles(files));
-  for (const id of ['export-obj', 'export-trace']) $(id).addEventListener('click', () => exporting(id));
+  for (const id of ['export-obj', 'export-solid', 'export-trace']) $(id).addEventListener('click', () => exporting(id));
   $('export-menu').addEventListener('beforetoggle', () => {
     const at = $('export').getBoundingClientRect();
     const style = $('export-menu').style;
