@@ -284,6 +284,9 @@ export class Deform extends Mode {
         if (!this.handles.dragging) return;
         this.handles.drag(value);
         return void this.#aim();
+      case 'turn':
+        this.handles.turn(this.#scene.axis, value);
+        return void this.#aim();
       case 'drop':
         if (!this.handles.dragging) return;
         this.handles.drop();
@@ -312,6 +315,11 @@ export class Deform extends Mode {
     const axes = this.bench.cameraAxes(NUDGE);
     const delta = [0, 1, 2].map((k) => right * axes[k] + up * axes[3 + k]);
     if (this.session?.ready && this.handles.move(delta)) this.#aim();
+  }
+
+  /** Turns the selected handle about the longest axis of the solid, a twelfth of a turn times `times`. */
+  twist(times) {
+    if (this.session?.ready && this.#scene && this.handles.twist(this.#scene.axis, (times * Math.PI) / 6)) this.#aim();
   }
 
   /** Selects the next handle. */

@@ -1,5 +1,5 @@
 // What is held of a solid, and where it is to go. No DOM here.
-import { pick } from './presets.js';
+import { pick, turned } from './presets.js';
 
 /** Handles: sets of vertices that are held and moved together; and one vertex that is pulled. */
 export class Handles {
@@ -79,10 +79,22 @@ export class Handles {
     target.at = from.map((x, i) => x + delta[i % 3]);
   }
 
+  /** A handle that is dragged is turned by `angle` since it was grabbed, about its middle and a coordinate axis. */
+  turn(axis, angle) {
+    if (this.#grabbed?.target.vertices) this.#grabbed.target.at = turned(this.#grabbed.from, axis, angle);
+  }
+
   /** It is let go: a handle stays where it is, a vertex springs back. */
   drop() {
     this.#grabbed = undefined;
     this.#pulled = undefined;
+  }
+
+  /** Turns the selected handle; says whether there was one. */
+  twist(axis, angle) {
+    const group = this.groups[this.selected];
+    if (group) group.at = turned(group.at, axis, angle);
+    return group !== undefined;
   }
 
   get dragging() {

@@ -147,7 +147,7 @@ function connect() {
     r: act('reset'), f: () => page.canvas?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
     p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     m: () => switchTo(page.active === modes.flatten ? 'deform' : 'flatten'),
-    h: act('nextHandle'), j: act('nudge', -1, 0), l: act('nudge', 1, 0), i: act('nudge', 0, 1), k: act('nudge', 0, -1), Delete: act('release'),
+    h: act('nextHandle'), j: act('nudge', -1, 0), l: act('nudge', 1, 0), i: act('nudge', 0, 1), k: act('nudge', 0, -1), u: act('twist', -1), y: act('twist', 1), Delete: act('release'),
     ...Object.fromEntries(digits),
   });
 }

@@ -98,7 +98,7 @@ export function collapsed(rest, positions, held) {
 }
 
 /**
- * The scene of a preset on a solid at rest: `held` handles (lists of vertices), the `start` (n×3), and
+ * The scene of a preset on a solid at rest: its longest `axis`, `held` handles (lists of vertices), the `start` (n×3), and
  * the `motion` of one handle, if any: `{ handle, steps, at(k) }`, where its vertices are after k iterations.
  */
 export function scene(preset, rest) {
@@ -111,9 +111,9 @@ export function scene(preset, rest) {
   const motion = (rate, at) => (apart ? { handle: 1, steps: Math.ceil(rate.total / rate.perStep - 1e-9), at: (k) => at(Math.min(k * rate.perStep, rate.total)) } : undefined);
   switch (preset) {
     case 'squash':
-      return { held, start, motion: motion(SQUASH, (part) => base.map((x, i) => (i % 3 === axis ? x - part * length : x))) };
+      return { axis, held, start, motion: motion(SQUASH, (part) => base.map((x, i) => (i % 3 === axis ? x - part * length : x))) };
     case 'twist':
-      return { held, start, motion: motion(TWIST, (angle) => turned(base, axis, angle)) };
+      return { axis, held, start, motion: motion(TWIST, (angle) => turned(base, axis, angle)) };
     case 'random':
     case 'collapse': {
       if (apart) {
@@ -121,9 +121,9 @@ export function scene(preset, rest) {
         high.forEach((v, i) => start.set(half.subarray(3 * i, 3 * i + 3), 3 * v));
       }
       const all = held.flatMap((vertices) => [...vertices]);
-      return { held, start: preset === 'random' ? scattered(rest, start, all) : collapsed(rest, start, all) };
+      return { axis, held, start: preset === 'random' ? scattered(rest, start, all) : collapsed(rest, start, all) };
     }
     default:
-      return { held, start };
+      return { axis, held, start };
   }
 }

@@ -264,6 +264,16 @@ describe('handles', () => {
     assert.ok(Math.hypot(...after.map((x, k) => x - before[k])) > 0.1);
     assert.ok(Math.abs(last[1] - first[1] + 90) < 12, `${first} → ${last}`);
     assert.equal((await status(page)).inverted, 0);
+    // With Ctrl the same drag turns the handle about the long axis: it comes no nearer to the other.
+    const before2 = await positionOf(page, vertex);
+    const now = await Promise.all(middle.map((v) => place(page, v)));
+    const there = [0, 1].map((k) => now.reduce((sum, p) => sum + p[k] / now.length, 0));
+    await page.keyboard.down('Control');
+    await drag(page, there, [there[0] + 50, there[1]]);
+    await page.keyboard.up('Control');
+    await rest(page);
+    const turned = await positionOf(page, vertex);
+    assert.ok(Math.abs(turned[0] - before2[0]) < 1e-5 && Math.hypot(turned[1] - before2[1], turned[2] - before2[2]) > 0.05);
   });
 
   onPage('the skin can be pulled, and springs back', { query: `${SMALL}&preset=held`, viewport: WIDE }, async (page) => {

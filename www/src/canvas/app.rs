@@ -71,6 +71,7 @@ fn spell(event: Event) -> (&'static str, JsValue) {
             let delta = delta.as_dvec3().to_array();
             ("drag", js_sys::Float64Array::from(&delta[..]).into())
         }
+        Event::Turn(angle) => ("turn", JsValue::from_f64(f64::from(angle))),
         Event::Drop => ("drop", JsValue::UNDEFINED),
     }
 }

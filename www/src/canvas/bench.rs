@@ -68,6 +68,8 @@ pub enum Event {
     GrabVertex(u32),
     /// How far what is dragged has come since it was grabbed.
     Drag(Vec3),
+    /// How far what is dragged is turned, in radians, about an axis the page knows.
+    Turn(f32),
     /// It was let go.
     Drop,
 }

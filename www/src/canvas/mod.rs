@@ -38,7 +38,7 @@ impl Canvas {
     /// Starts drawing on a canvas element. `listen(name, value)` hears what people do on it:
     /// `show` (an iterate was chosen on the plot: its index); on a solid `pin` (vertices),
     /// `select` (a handle's index or -1), `grab-handle` (its index), `grab-vertex` (the vertex), `drag`
-    /// (x y z, how far it has come since), `drop`.
+    /// (x y z, how far it has come since), `turn` (by how many radians since), `drop`.
     pub async fn start(
         element: HtmlCanvasElement,
         listen: js_sys::Function,

@@ -40,6 +40,8 @@ pub enum Grab {
     Camera,
     /// Vertices: where their anchor was and where the pointer was, when it began.
     Vertices(Vec3, Vec2),
+    /// A handle, turned: where the pointer was when it began.
+    Turn(Vec2),
     /// A rubber band, from here.
     Box(Pos2),
 }

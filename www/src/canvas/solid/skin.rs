@@ -12,6 +12,9 @@ use crate::solid::pick::{Lens, vertex_at, vertices_in};
 /// How far beside the solid a pointer may be and still mean a vertex, in points.
 const BESIDE: f32 = 9.0;
 
+/// Points of a drag sideways that turn a handle by one radian.
+const RADIAN: f32 = 70.0;
+
 /// Draws the view and answers the pointer.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     let response = ui.interact(rect, ui.scope_id().with("skin"), Sense::click_and_drag());
@@ -83,16 +86,17 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
     let Some(mut body) = bench.body.take() else {
         return;
     };
-    let (shift, origin, pointer) = ui.input(|i| {
+    let (shift, turning, origin, pointer) = ui.input(|i| {
         (
             i.modifiers.shift,
+            i.modifiers.command,
             i.pointer.press_origin(),
             i.pointer.latest_pos(),
         )
     });
     let by_main = response.dragged_by(PointerButton::Primary);
     if let Some(touch) = touch {
-        if matches!(body.grab, Some(Grab::Vertices(..))) {
+        if matches!(body.grab, Some(Grab::Vertices(..) | Grab::Turn(_))) {
             bench.events.push(Event::Drop);
         }
         body.grab = Some(Grab::Camera);
@@ -102,6 +106,9 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
             .drag(Vec2::new(d.x, d.y), rect.size().min_elem());
     } else if response.drag_started() {
         body.grab = Some(begin(bench, &body, lens, by_main, shift, origin, local));
+        if let (Some(Grab::Vertices(_, from)), true) = (body.grab, turning) {
+            body.grab = Some(Grab::Turn(from));
+        }
     }
     if response.dragged() && touch.is_none() {
         match body.grab {
@@ -109,6 +116,12 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
                 if let Some(p) = pointer {
                     let delta = lens.drag(anchor, from, local(p));
                     bench.events.push(Event::Drag(delta));
+                }
+            }
+            Some(Grab::Turn(from)) => {
+                if let Some(p) = pointer {
+                    let d = local(p) - from;
+                    bench.events.push(Event::Turn((d.x + d.y) / RADIAN));
                 }
             }
             Some(Grab::Camera) => {
@@ -122,7 +135,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
     }
     if response.drag_stopped() {
         match body.grab {
-            Some(Grab::Vertices(..)) => bench.events.push(Event::Drop),
+            Some(Grab::Vertices(..) | Grab::Turn(_)) => bench.events.push(Event::Drop),
             Some(Grab::Box(from)) => {
                 if let (Some(frame), Some(to)) = (bench.map(), pointer) {
                     let positions = body.positions(frame);
@@ -169,7 +182,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
         }
     }
     match body.grab {
-        Some(Grab::Vertices(..)) => ui.ctx().set_cursor_icon(CursorIcon::Grabbing),
+        Some(Grab::Vertices(..) | Grab::Turn(_)) => ui.ctx().set_cursor_icon(CursorIcon::Grabbing),
         Some(Grab::Box(_)) => ui.ctx().set_cursor_icon(CursorIcon::Crosshair),
         None if response.hovered() && (shift || body.box_tool) => {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
