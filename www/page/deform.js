@@ -418,8 +418,9 @@ export class Deform extends Mode {
     ];
     if (this.session.finished && this.session.newest.iteration > 0) pairs.push(['ended', `${ending(this.session.newest)} after ${this.session.newest.iteration}`]);
     if (certificate) {
-      const wrong = count(certificate.inverted) + count(certificate.degenerate);
+      const wrong = certificate.inverted.length + certificate.degenerate.length;
       pairs.push(['certificate', wrong === 0 ? 'no tetrahedron inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
+      if (wrong === 0) pairs.push(['', certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)']);
     }
     this.bench.facts(pairs);
   }
@@ -453,8 +454,6 @@ export class Deform extends Mode {
     if (method && METHODS[method]) this.change('method', method);
   }
 }
-
-const count = (list) => (typeof list === 'number' ? list : list?.length ?? 0);
 
 const matches = (a, b) => a !== undefined && b !== undefined && a.length === b.length && a.every((x, i) => x === b[i]);
 
