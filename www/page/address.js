@@ -9,7 +9,7 @@ export const DEFAULTS = Object.freeze({
     sample: 'bumpy-cap', triangles: 4000, start: 'random', method: 'wrapd', energy: 'symmetric-dirichlet',
   }),
   deform: Object.freeze({
-    solid: 'bar', tetrahedra: 6000, preset: 'random', method: 'wrapd', material: 'neo-hookean', young: 1e6, poisson: 0.4,
+    solid: 'bar', tetrahedra: 3000, preset: 'random', method: 'wrapd', material: 'neo-hookean', young: 1e6, poisson: 0.3,
     field: 'stretch', cut: 'z', at: 0.5,
   }),
 });

@@ -177,10 +177,10 @@ export class Deform extends Mode {
   }
 
   /** The scene's motion, one iteration on. */
-  async beforeStep(iterations = 1) {
+  async beforeStep() {
     if (!this.restless) return;
     const { motion } = this.#scene;
-    this.#moved = Math.min(this.#moved + iterations, motion.steps);
+    this.#moved += 1;
     this.handles.groups[motion.handle].at = motion.at(this.#moved);
     this.#drawTargets();
     await this.session.aim(this.handles.targets());
@@ -193,7 +193,8 @@ export class Deform extends Mode {
         skipped.forEach((record) => this.bench.pushNumbers(record));
         this.#tick(skipped.length);
         this.took(step);
-        await Promise.all([this.beforeStep(skipped.length + 1), nextFrame()]);
+        // One step of the motion a frame: what is inside has time to follow what is held.
+        await Promise.all([this.beforeStep(), nextFrame()]);
         if (!mayGo()) this.session.stop();
       });
       // A target that moved while the last step was being made keeps it going.

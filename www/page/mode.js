@@ -24,6 +24,7 @@ export class Mode {
   #lastStep = Promise.resolve();
   #task = 0; // what a person asked for last; anything older stops
   #soon;
+  #follows = true; // whether what is shown is the newest, and stays so
   #pending; // an act a person asked for before the solver had come
 
   /** `page`: `{ canvas, foldfree, active, busy(text, part) }`. */
@@ -60,8 +61,9 @@ export class Mode {
 
   // ——— what is shown ———
 
-  show(index, { quietly = false } = {}) {
+  show(index, { quietly = false, soon = false } = {}) {
     if (!this.records.length) return;
+    if (!soon) this.#follows = index >= this.records.length - 1;
     this.shown = Math.max(0, Math.min(index, this.records.length - 1));
     this.bench?.show(this.shown);
     if (!this.active) return;
@@ -75,8 +77,8 @@ export class Mode {
     if (document.hidden || this.session.finished) {
       cancelAnimationFrame(this.#soon);
       this.#soon = undefined;
-      this.show(this.shown);
-    } else this.#soon ??= requestAnimationFrame(() => { this.#soon = undefined; this.show(this.shown); });
+      this.show(this.shown, { soon: true });
+    } else this.#soon ??= requestAnimationFrame(() => { this.#soon = undefined; this.show(this.shown, { soon: true }); });
   }
 
   invite() {
@@ -147,10 +149,9 @@ export class Mode {
 
   /** A step has come: the canvas gets it, and shows it unless a person has scrubbed away. */
   took(step) {
-    const following = this.shown >= this.records.length - 2;
     this.push(step);
     if (this.session.finished && !this.restless) this.ended(step);
-    if (following) this.showSoon();
+    if (this.#follows) this.showSoon();
     else if (this.active) drawStatus(this);
   }
 

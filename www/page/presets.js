@@ -4,7 +4,7 @@
 const END = 0.08;
 
 /** What a preset does in one iteration, and altogether. */
-const TWIST = { perStep: (4 * Math.PI) / 180, total: 2 * Math.PI };
+const TWIST = { perStep: (3 * Math.PI) / 180, total: 2 * Math.PI };
 const SQUASH = { perStep: 0.008, total: 0.45 };
 
 /** Names, in the order of the buttons: what the button says, what it is for. */
