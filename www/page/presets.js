@@ -104,8 +104,8 @@ export function collapsed(rest, positions, held) {
 export function scene(preset, rest) {
   const { axis, length, low, high } = ends(rest);
   const start = Float64Array.from(rest);
-  // A solid so coarse that its ends meet is held at one of them.
-  const apart = high.length > 0 && !low.some((v) => high.includes(v));
+  // A solid so coarse that its ends meet, or are all of it, is held at one of them.
+  const apart = low.length + high.length < rest.length / 3 && !low.some((v) => high.includes(v));
   const held = apart ? [low, high] : [low];
   const base = pick(rest, high);
   const motion = (rate, at) => (apart ? { handle: 1, steps: Math.ceil(rate.total / rate.perStep - 1e-9), at: (k) => at(Math.min(k * rate.perStep, rate.total)) } : undefined);

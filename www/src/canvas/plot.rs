@@ -12,7 +12,7 @@ use crate::words::{energy_caption, method_name};
 /// The least relative gap that is drawn.
 const LEAST_GAP: f64 = 1e-12;
 
-/// Values of a solid's run below this part of the greatest are drawn at the bottom.
+/// Energies of a solid below this part of the greatest are drawn at the bottom.
 const LEAST_OF_MOST: f64 = 1e-9;
 
 struct Frame {
@@ -237,20 +237,16 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
     let mut values: Vec<f64> = runs()
         .flat_map(|run| run.records.iter().filter_map(|r| frame.energy(r)))
         .collect();
+    if bench.body.is_some() && gap.is_none() {
+        // What is zero but for rounding (a solid at rest) does not stretch the axis.
+        let most = values.iter().copied().fold(0.0, f64::max);
+        values.retain(|v| *v >= LEAST_OF_MOST * most);
+    }
     if gap.is_none() {
         frame.floor = 17.0 * bench.text;
         for record in &bench.run.records {
             values.extend([record.worst_distortion(), f64::from(record.inverted)]);
         }
-    }
-    // What is zero but for rounding (a solid at rest) does not stretch the axis.
-    let most = values
-        .iter()
-        .copied()
-        .filter(|v| v.is_finite())
-        .fold(0.0, f64::max);
-    if bench.body.is_some() && gap.is_none() {
-        values.retain(|v| *v >= LEAST_OF_MOST * most);
     }
     frame.axis = LogAxis::over(values);
     frame

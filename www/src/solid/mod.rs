@@ -11,6 +11,12 @@ use glam::{DVec3, Vec3};
 /// Edges of the skin bent by more than this angle (in degrees) at rest are drawn as lines.
 const CREASE: f64 = 40.0;
 
+/// Cosine of the angle up to which one sharp edge continues another.
+const STRAIGHT: f64 = 0.97;
+
+/// Skins of fewer triangles have all their sharp edges drawn.
+const FEW: usize = 100;
+
 /// What does not change while a solid is deformed.
 #[derive(Debug, Clone, Default)]
 pub struct Solid {
@@ -100,13 +106,39 @@ fn creases(skin: &[[u32; 3]], point: impl Fn(u32) -> DVec3) -> Vec<[u32; 2]> {
         .collect();
     edges.sort_unstable();
     let limit = CREASE.to_radians().cos();
-    edges
+    let sharp: Vec<[u32; 2]> = edges
         .chunk_by(|a, b| a.0 == b.0)
         .filter(|same| match same {
             [(_, t), (_, u)] => normal(&skin[*t as usize]).dot(normal(&skin[*u as usize])) < limit,
             _ => true,
         })
         .map(|same| same[0].0)
+        .collect();
+    if skin.len() < FEW {
+        return sharp;
+    }
+    // On a coarse round solid every other edge is sharp: only those that go on straight make a line.
+    let mut at: Vec<(u32, DVec3)> = sharp
+        .iter()
+        .flat_map(|&[a, b]| {
+            let along = (point(b) - point(a)).normalize_or_zero();
+            [(a, along), (b, -along)]
+        })
+        .collect();
+    at.sort_unstable_by_key(|(v, _)| *v);
+    let goes_on = |v: u32, away: DVec3| {
+        let first = at.partition_point(|(u, _)| *u < v);
+        at[first..]
+            .iter()
+            .take_while(|(u, _)| *u == v)
+            .any(|(_, along)| along.dot(away) < -STRAIGHT)
+    };
+    sharp
+        .into_iter()
+        .filter(|&[a, b]| {
+            let along = (point(b) - point(a)).normalize_or_zero();
+            goes_on(a, along) || goes_on(b, -along)
+        })
         .collect()
 }
 
