@@ -22,8 +22,8 @@ const CHOICES = {
   },
   deform: {
     preset: ['held', 'squash', 'twist', 'random', 'collapse'],
-    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd'],
-    material: ['neo-hookean', 'arap', 'symmetric-dirichlet'],
+    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
+    material: ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff', 'arap', 'symmetric-dirichlet', 'dirichlet'],
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
   },

@@ -3,6 +3,9 @@
 /** Iterations of one solver at most: a person may drag for a long time. */
 export const MOST_ITERATIONS = 100_000;
 
+/** Energies below this part of the stiffness are nothing but rounding, and told as 0. */
+const ROUNDING = 1e-14;
+
 /** A solid on the bench. Its solver is made anew when pins or material change, from where the solid is. */
 export class DeformSession {
   #foldfree;
@@ -74,6 +77,7 @@ export class DeformSession {
       source, settings, pins: pins.length, notes: [...solid.notes, ...solver.notes], setupSeconds: solver.setupSeconds,
     };
     this.certificate = undefined;
+    this.#calm(solver.start);
     this.#status = solver.start.status;
     this.positions = solver.start.positions;
     if (fresh) {
@@ -151,12 +155,17 @@ export class DeformSession {
     }
   }
 
+  #calm(step) {
+    if (Math.abs(step.energy) < ROUNDING * (this.problem.settings.young ?? 1)) step.energy = 0;
+  }
+
   /** Keeps a step's numbers, counted on from the solvers before. */
   #record(step) {
     const milliseconds = (step.phases ?? []).reduce((sum, phase) => sum + phase.milliseconds, 0);
     // Seconds of solving: the solver's own clock also runs while it waits for the next step.
     step.seconds = (this.newest?.seconds ?? 0) + milliseconds / 1000;
     step.iteration += this.#before.iterations;
+    this.#calm(step);
     this.#status = step.status === 'cancelled' ? 'running' : step.status;
     const numbers = numbersOf(step);
     this.records.push(numbers);

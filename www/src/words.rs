@@ -116,19 +116,19 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
             unit: Some(["solve", "solves"]),
             sentence: "The whole {whole} is the solution of one sparse linear system; there is nothing to iterate.",
         },
-        ("l-bfgs", PhaseKind::Local) => Explanation {
-            name: "Gradient",
-            symbol: "∇E(X)",
-            equation: "Liu 2017",
-            unit: None,
-            sentence: "Every {element} on its own adds its forces to the gradient of the energy.",
-        },
         ("l-bfgs", PhaseKind::Global) => Explanation {
             name: "Global",
-            symbol: "X ← X − α H ∇E",
+            symbol: "D ← −H ∇E(X)",
             equation: "Liu 2017",
-            unit: Some(["line search", "line searches"]),
-            sentence: "All vertices move together: a quasi-Newton step that begins from the factored Laplacian, as far as a line search lets it go.",
+            unit: Some(["direction", "directions"]),
+            sentence: "All vertices together: a quasi-Newton direction, begun from the factored Laplacian.",
+        },
+        ("l-bfgs", PhaseKind::Evaluate) => Explanation {
+            name: "Line search",
+            symbol: "E(X + αD) low enough",
+            equation: "Armijo",
+            unit: Some(["trial", "trials"]),
+            sentence: "Energy and gradient of all {elements} at full step; half of it, and so on, until the energy falls.",
         },
         (_, PhaseKind::Local) if rotation_aware => Explanation {
             name: "Local",
@@ -178,7 +178,11 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
 /// What the energy of the run counts, with the value of an isometry.
 pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
     if solid {
-        "energy (undeformed: 0)"
+        match energy {
+            "symmetric-dirichlet" => "energy (undeformed: 1)",
+            "dirichlet" => "energy",
+            _ => "energy (undeformed: 0)",
+        }
     } else if energy == "arap" {
         "energy (isometry: 0)"
     } else {

@@ -231,13 +231,15 @@ describe('solving', () => {
     await page.press('#poisson', 'Tab');
     assert.equal(await page.evaluate(() => document.getElementById('poisson').validity.valid), false);
     assert.equal(await page.evaluate(() => globalThis.foldfreePage.session.problem.settings.poisson), 0.3);
-    for (const method of ['admm-pd', 'w-admm', 'r-admm']) {
+    for (const method of ['admm-pd', 'w-admm', 'r-admm', 'l-bfgs']) {
       await page.selectOption('#deform-method', method);
       await page.waitForFunction((m) => globalThis.foldfreePage.session.problem.settings.method === m && (globalThis.foldfreePage.session.finished || globalThis.foldfreePage.session.records.length > 3), method);
     }
-    await page.selectOption('#material', 'arap');
-    await page.waitForFunction(() => globalThis.foldfreePage.session.problem.settings.energy === 'arap');
-    assert.ok(await page.isDisabled('#young'));
+    for (const material of ['stable-neo-hookean', 'st-venant-kirchhoff', 'dirichlet', 'symmetric-dirichlet', 'arap']) {
+      await page.selectOption('#material', material);
+      await page.waitForFunction((m) => globalThis.foldfreePage.session.problem.settings.energy === m, material);
+      assert.equal(await page.isDisabled('#young'), !/hook|kirch/.test(material), material);
+    }
     assert.ok(await page.isHidden('#notice'));
   });
 });

@@ -259,7 +259,7 @@ impl Column<'_> {
         let nouns = self.bench.nouns();
         let energy = number(record.energy, 7);
         if self.bench.body.is_some() {
-            self.pair("energy", &energy, "Elastic energy, in the unit of the moduli times volume; undeformed it is 0. While tetrahedra are inverted it is that of the local variables Z.");
+            self.pair("energy", &energy, "Elastic energy, in the unit of the moduli times volume; relative for materials without moduli. While tetrahedra are inverted it is that of the local variables Z.");
         } else {
             let isometry = if self.bench.energy == "arap" {
                 "0"
