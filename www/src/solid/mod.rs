@@ -173,4 +173,38 @@ pub(crate) mod tests {
             assert!(triangle.iter().all(|v| tetrahedron.contains(v)));
         }
     }
+
+    #[test]
+    fn only_sharp_edges_that_go_straight_on_are_drawn() {
+        // Two strips of sixty squares that meet at a right angle, along a straight or a jagged line.
+        let count = |jag: f64| {
+            let point = |v: u32| {
+                let (i, row) = (f64::from(v / 3), v % 3);
+                let jag = if v / 3 % 2 == 0 { jag } else { -jag };
+                match row {
+                    0 => DVec3::new(i, -2.0, 0.0),
+                    1 => DVec3::new(i, jag, jag),
+                    _ => DVec3::new(i, 0.0, -2.0),
+                }
+            };
+            let skin: Vec<[u32; 3]> = (0..60)
+                .flat_map(|i| {
+                    let v = 3 * i;
+                    [
+                        [v, v + 1, v + 3],
+                        [v + 3, v + 1, v + 4],
+                        [v + 1, v + 2, v + 4],
+                        [v + 4, v + 2, v + 5],
+                    ]
+                })
+                .collect();
+            let lines = creases(&skin, point);
+            lines
+                .iter()
+                .filter(|e| e.iter().all(|v| v % 3 == 1))
+                .count()
+        };
+        assert_eq!(count(0.0), 60);
+        assert_eq!(count(0.4), 0);
+    }
 }
