@@ -40,7 +40,7 @@ function assemble() {
   const copy = (from, to = from.replace(/^www\//, '')) => cpSync(join(root, from), join(dist, to), { recursive: true });
   for (const name of ['index.html', 'style.css', 'icon.svg', 'page']) copy(`www/${name}`);
   copy('www/assets/fonts', 'fonts');
-  if (existsSync(join(root, 'www/assets/start.bin'))) copy('www/assets/start.bin', 'start.bin');
+  for (const name of ['start.bin', 'start-deform.bin']) if (existsSync(join(root, 'www/assets', name))) copy(`www/assets/${name}`, name);
   rmSync(join(dist, 'fonts/subset.py'), { force: true });
   if (existsSync(join(root, 'pkg/index.js'))) {
     rmSync(join(dist, 'pkg'), { recursive: true, force: true });

@@ -32,42 +32,22 @@ export async function startCanvas(element, listen, onProgress = () => {}) {
   return new Board(canvas);
 }
 
-/** The canvas, speaking the page's records. */
+/** The canvas, and the benches of its modes. */
 class Board {
+  #benches = new Map();
+
   constructor(canvas) {
     this.canvas = canvas;
   }
 
-  /** A surface: positions (n×3), triangles (m×3). */
-  surface({ positions, indices }) {
-    this.canvas.setProblem(Float64Array.from(positions), Uint32Array.from(indices));
+  /** The bench of a mode. */
+  on(mode) {
+    if (!this.#benches.has(mode)) this.#benches.set(mode, new BenchBoard(this.canvas.bench(mode)));
+    return this.#benches.get(mode);
   }
 
-  /** A run of `method` from `start` begins. */
-  begin(method, start, energy) {
-    this.canvas.beginRun(method, start, energy);
-  }
-
-  /** An iterate. */
-  push(step) {
-    const numbers = Float64Array.of(
-      step.iteration, step.energy, step.inverted, step.gradientNorm, step.smallestSigma, step.largestSigma,
-      step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds,
-    );
-    const phases = Float64Array.from(
-      (step.phases ?? []).flatMap(({ kind, count, milliseconds }) => [PHASES.indexOf(kind), count, milliseconds]),
-    );
-    const map = step.positions instanceof Float32Array ? step.positions : Float32Array.from(step.positions);
-    this.canvas.pushFrame(numbers, phases, map);
-  }
-
-  /** Pairs of boundary edges that meet in the newest map. */
-  crossings(list) {
-    this.canvas.setCrossings(Uint32Array.from(list.flatMap(({ edges }) => edges.flat())));
-  }
-
-  show(index) { this.canvas.showFrame(index); }
-  facts(pairs) { this.canvas.setFacts(pairs.flat()); }
+  /** Shows the bench of a mode. */
+  mode(name) { this.canvas.setMode(name); }
   theme(dark) { this.canvas.setTheme(dark); }
   view(name) { this.canvas.setView(name); }
   toggle(name) { this.canvas.toggle(name); }
@@ -81,6 +61,116 @@ class Board {
   }
 }
 
+/** One mode's bench, speaking the page's records. */
+class BenchBoard {
+  /** Tetrahedra of the solid on this bench. */
+  tetrahedra = 0;
+
+  constructor(handle) {
+    this.handle = handle;
+  }
+
+  /** A surface: positions (n×3), triangles (m×3). */
+  surface({ positions, indices }) {
+    this.handle.setProblem(Float64Array.from(positions), Uint32Array.from(indices));
+  }
+
+  /** A solid: positions (n×3), tetrahedra (m×4), triangles of its skin (k×3). */
+  solid({ positions, tetrahedra, surface }) {
+    this.tetrahedra = tetrahedra.length / 4;
+    this.handle.setSolid(Float64Array.from(positions), tetrahedra, surface);
+  }
+
+  /** A run of `method` from `start` begins. */
+  begin(method, start, energy) {
+    this.handle.beginRun(method, start, energy);
+  }
+
+  /** An iterate of a map. */
+  push(step) {
+    if (step.solid) return this.pushSolid(step);
+    this.handle.pushFrame(numbers(step), phases(step), single(step.positions));
+  }
+
+  /** An iterate of a solid; `field` are its relative stresses. */
+  pushSolid(step, field = step.field) {
+    this.handle.pushSolid(numbers(step), phases(step), single(step.positions), field ?? new Float32Array());
+  }
+
+  /** An iterate of which only the numbers have come. */
+  pushNumbers(step) {
+    this.handle.pushNumbers(numbers(step), phases(step));
+  }
+
+  /** Pairs of boundary edges that meet in the newest map. */
+  crossings(list) {
+    this.handle.setCrossings(Uint32Array.from(list.flatMap(({ edges }) => edges.flat())));
+  }
+
+  /** What is held, handle by handle. */
+  handles({ groups, selected }) {
+    const vertices = Uint32Array.from(groups.flatMap((group) => [...group.vertices]));
+    this.handle.setHandles(vertices, Uint32Array.from(groups, (group) => group.vertices.length));
+    this.handle.setSelected(selected);
+  }
+
+  /** Where vertices are to go. */
+  targets({ vertices, positions }) {
+    this.handle.setTargets(vertices, positions);
+  }
+
+  show(index) { this.handle.showFrame(index); }
+  facts(pairs) { this.handle.setFacts(pairs.flat()); }
+  field(name) { this.handle.setField(name); }
+  cut(axis, at) { this.handle.setCut(axis, at); }
+  boxTool(on) { this.handle.setBoxTool(on); }
+  tinted(on) { this.handle.setTinted(on); }
+  cameraAxes(step) { return this.handle.cameraAxes(step); }
+}
+
+const single = (positions) => (positions instanceof Float32Array ? positions : Float32Array.from(positions));
+
+const numbers = (step) => Float64Array.of(
+  step.iteration, step.energy, step.inverted, step.gradientNorm, step.smallestSigma, step.largestSigma,
+  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds,
+);
+
+const phases = (step) => Float64Array.from(
+  (step.phases ?? []).flatMap(({ kind, count, milliseconds }) => [PHASES.indexOf(kind), count, milliseconds]),
+);
+
+/** Reads arrays one after the other. */
+function reader(buffer) {
+  let at = 16;
+  return (Type, count) => {
+    const array = new Type(buffer, at, count);
+    at += array.byteLength;
+    return array;
+  };
+}
+
+/** Iteration 0 from its five numbers. */
+function startFrom([energy, inverted, gradientNorm, smallestSigma, largestSigma], positions) {
+  return {
+    iteration: 0, status: 'running', converged: false, energy, inverted, gradientNorm, smallestSigma, largestSigma,
+    lbfgsIterations: 0, reweighted: false, seconds: 0, phases: [], positions,
+  };
+}
+
+/** The prepared solid: "SOLI", vertices, tetrahedra, skin triangles; numbers f64; positions, start f32; indices u32. */
+export async function preparedSolid(url = new URL('../start-deform.bin', import.meta.url)) {
+  const response = await fetch(url);
+  if (!response.ok) return undefined;
+  const buffer = await response.arrayBuffer();
+  const [magic, vertices, count, triangles] = new Uint32Array(buffer, 0, 4);
+  if (magic !== 0x494c4f53) return undefined;
+  const take = reader(buffer);
+  const values = take(Float64Array, 6);
+  const [positions, start] = [take(Float32Array, 3 * vertices), take(Float32Array, 3 * vertices)];
+  const [tetrahedra, surface] = [take(Uint32Array, 4 * count), take(Uint32Array, 3 * triangles)];
+  return { positions, tetrahedra, surface, start: { ...startFrom(values, start), solid: true } };
+}
+
 /** The prepared start: "FOLD", counts, positions f32, triangles u32, map f32, numbers f64 (little-endian). */
 export async function preparedStart(url = new URL('../start.bin', import.meta.url)) {
   const response = await fetch(url);
@@ -88,18 +178,8 @@ export async function preparedStart(url = new URL('../start.bin', import.meta.ur
   const buffer = await response.arrayBuffer();
   const [magic, vertices, triangles] = new Uint32Array(buffer, 0, 3);
   if (magic !== 0x444c4f46) return undefined;
-  let at = 16;
-  const take = (Type, count) => {
-    const array = new Type(buffer, at, count);
-    at += array.byteLength;
-    return array;
-  };
-  const [energy, inverted, gradientNorm, smallestSigma, largestSigma] = take(Float64Array, 5);
-  at += 8; // the next arrays stay aligned
+  const take = reader(buffer);
+  const values = take(Float64Array, 6);
   const [positions, indices, map] = [take(Float32Array, 3 * vertices), take(Uint32Array, 3 * triangles), take(Float32Array, 2 * vertices)];
-  const start = {
-    iteration: 0, status: 'running', converged: false, energy, inverted, gradientNorm, smallestSigma, largestSigma,
-    lbfgsIterations: 0, reweighted: false, seconds: 0, phases: [], positions: map,
-  };
-  return { positions, indices, start };
+  return { positions, indices, start: startFrom(values, map) };
 }

@@ -3,25 +3,45 @@
 /** The largest file the page tries to open. */
 const LARGEST = 512 * 2 ** 20;
 
-/** Reads a mesh file, unpacking gzip: `{ name, format, bytes }`. */
-export async function readMeshFile(file) {
-  let name = file.name;
+/** A file's bytes, unpacked, and its format, one of `formats`; `kinds` says them in words. */
+async function unpacked(file, formats, kinds) {
   if (file.size === 0) throw new Error('the file is empty');
   if (file.size > LARGEST) throw new Error(`the file has ${Math.round(file.size / 2 ** 20)} MB; this page opens up to 512 MB`);
-  let stream = file.stream();
-  if (/\.gz$/i.test(name)) {
-    name = name.replace(/\.gz$/i, '');
-    stream = stream.pipeThrough(new DecompressionStream('gzip'));
-  }
-  const format = /\.(obj|off|ply|stl|mesh|msh|vtk)$/i.exec(name)?.[1].toLowerCase();
-  if (!format) throw new Error('this page reads OBJ, OFF, PLY, STL, MEDIT .mesh, MSH and VTK files (also .gz)');
-  let bytes;
+  const zipped = /\.gz$/i.test(file.name);
+  const extension = /\.([a-z]+)$/i.exec(file.name.replace(/\.gz$/i, ''))?.[1].toLowerCase();
+  if (!formats.includes(extension)) throw new Error(`this mode reads ${kinds} files (also .gz)`);
+  const stream = zipped ? file.stream().pipeThrough(new DecompressionStream('gzip')) : file.stream();
   try {
-    bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+    return { format: extension, bytes: new Uint8Array(await new Response(stream).arrayBuffer()) };
   } catch {
-    throw new Error(/\.gz$/i.test(file.name) ? 'the gzip file is damaged' : 'the file could not be read');
+    throw new Error(zipped ? 'the gzip file is damaged' : 'the file could not be read');
   }
-  return { name: file.name, format, bytes };
+}
+
+/** Reads a surface: `{ name, format, bytes }`. */
+export async function readMeshFile(file) {
+  return { name: file.name, ...(await unpacked(file, ['obj', 'off', 'ply', 'stl', 'mesh', 'msh', 'vtk'], 'OBJ, OFF, PLY, STL, MESH, MSH and VTK')) };
+}
+
+/** Reads a solid: `{ name, format, bytes, elements }`; a NODE file wants its ELE file beside it. */
+export async function readSolidFiles(files) {
+  const kinds = 'MESH, MSH, VTK, and NODE with ELE';
+  const read = await Promise.all(files.map(async (file) => ({ name: file.name, ...(await unpacked(file, ['mesh', 'msh', 'vtk', 'node', 'ele'], kinds)) })));
+  const elements = read.find(({ format }) => format === 'ele');
+  const first = read.find(({ format }) => format !== 'ele');
+  if (!first) throw new Error('an ELE file needs its NODE file: open both together');
+  if (first.format === 'node' && !elements) throw new Error('a NODE file needs its ELE file: open both together');
+  return first.format === 'node' ? { ...first, elements: elements.bytes } : first;
+}
+
+/** A solid as a MEDIT .mesh file. */
+export function medit(positions, tetrahedra) {
+  const lines = ['MeshVersionFormatted 2', 'Dimension 3', 'Vertices', String(positions.length / 3)];
+  for (let i = 0; i < positions.length; i += 3) lines.push(`${positions[i]} ${positions[i + 1]} ${positions[i + 2]} 0`);
+  lines.push('Tetrahedra', String(tetrahedra.length / 4));
+  for (let i = 0; i < tetrahedra.length; i += 4) lines.push(`${Array.from(tetrahedra.subarray(i, i + 4), (v) => v + 1).join(' ')} 0`);
+  lines.push('End', '');
+  return lines.join('\n');
 }
 
 /** Lets the browser save `content` under `name`. */
@@ -33,8 +53,8 @@ export function save(content, name, type) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Calls `onFile` for a file dropped anywhere; `veil` shows while one is dragged over the page. */
-export function acceptDrops(veil, onFile) {
+/** Calls `onFiles` for files dropped anywhere; `veil` shows while one is dragged over the page. */
+export function acceptDrops(veil, onFiles) {
   const hasFile = (event) => event.dataTransfer?.types.includes('Files');
   let depth = 0;
   const listen = (name, act) =>
@@ -50,7 +70,7 @@ export function acceptDrops(veil, onFile) {
   listen('dragleave', () => { depth = Math.max(0, depth - 1); });
   listen('drop', (event) => {
     depth = 0;
-    const [file] = event.dataTransfer.files;
-    if (file) onFile(file);
+    const files = [...event.dataTransfer.files];
+    if (files.length) onFiles(files);
   });
 }

@@ -47,12 +47,19 @@ function arrange() {
 /** Shows one view, on a phone. */
 function choose(view) {
   tab = view;
+  document.body.dataset.tab = view;
   for (const button of document.querySelectorAll('[role="tab"]')) {
     const on = button.dataset.view === view;
     button.setAttribute('aria-selected', String(on));
     button.tabIndex = on ? 0 : -1;
   }
   arrange();
+}
+
+/** The names of the views on a phone's tabs, and the one that is shown first. */
+export function nameViews(names, first) {
+  for (const button of document.querySelectorAll('[role="tab"]')) button.textContent = names[button.dataset.view];
+  choose(first);
 }
 
 /** Views only, text at double size; or back. */

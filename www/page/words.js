@@ -23,7 +23,7 @@ export function spoken(record) {
 
 /** Names of methods, as people write them. */
 export const METHODS = {
-  wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', arap: 'ARAP',
+  wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', 'l-bfgs': 'L-BFGS', arap: 'ARAP',
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
 

@@ -15,6 +15,8 @@ pub struct Orbit {
     pub radius: f32,
     /// Magnification at which the surface filled a square view at first.
     fit: f32,
+    /// Half the depth that is shown, in radii.
+    reach: f32,
 }
 
 impl Orbit {
@@ -56,8 +58,15 @@ impl Orbit {
             centre: centre.as_vec3(),
             radius: radius as f32,
             fit: 1.0,
+            reach: 1.6,
         };
         orbit.centred(positions)
+    }
+
+    /// Shows `reach` radii (at most 3.5) before and behind the centre.
+    pub fn reaching(self, reach: f32) -> Self {
+        let reach = reach.min(3.5);
+        Self { reach, ..self }
     }
 
     /// Moves the centre so that the points appear in the middle of the view, and the radius so that
@@ -104,7 +113,8 @@ impl Orbit {
         let field = 0.5f32;
         let distance = 1.0 / (0.5 * field).sin();
         let fit = self.fit * self.zoom * aspect.min(1.0);
-        let projection = Mat4::perspective_rh_gl(field, aspect, distance - 1.6, distance + 1.6);
+        let (near, far) = (distance - self.reach, distance + self.reach);
+        let projection = Mat4::perspective_rh_gl(field, aspect, near, far);
         Mat4::from_scale(Vec3::new(fit, fit, 1.0))
             * projection
             * Mat4::from_translation(Vec3::new(0.0, 0.0, -distance))

@@ -24,13 +24,34 @@ pub fn ramp_position(distortion: f64) -> f64 {
     (distortion.max(1.0).ln() / DISTORTION_END.ln()).min(1.0)
 }
 
-/// The ramp as `n` RGBA texels, for the GPU.
+/// A diverging map, purple through a light grey to green (readable with any colour vision, and apart
+/// from the vermilion of what is inverted): `t` in [0, 1], the middle at one half.
+pub fn diverging(t: f64) -> Rgb {
+    const STOPS: [[f64; 3]; 7] = [
+        [84.0, 39.0, 136.0],
+        [128.0, 98.0, 176.0],
+        [189.0, 174.0, 214.0],
+        [240.0, 240.0, 238.0],
+        [168.0, 214.0, 170.0],
+        [74.0, 160.0, 96.0],
+        [0.0, 84.0, 44.0],
+    ];
+    let x = t.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;
+    let i = (x as usize).min(STOPS.len() - 2);
+    let part = x - i as f64;
+    std::array::from_fn(|k| (STOPS[i][k] + part * (STOPS[i + 1][k] - STOPS[i][k])).round() as u8)
+}
+
+/// The two ramps as `n` RGBA texels each, for the GPU: [`cividis`], then [`diverging`].
 pub fn ramp_texels(n: usize) -> Vec<u8> {
     let last = n.saturating_sub(1).max(1) as f64;
-    (0..n)
-        .flat_map(|i| {
-            let [r, g, b] = cividis(i as f64 / last);
-            [r, g, b, 255]
+    [cividis, diverging]
+        .iter()
+        .flat_map(|ramp| {
+            (0..n).flat_map(move |i| {
+                let [r, g, b] = ramp(i as f64 / last);
+                [r, g, b, 255]
+            })
         })
         .collect()
 }
@@ -53,6 +74,7 @@ pub fn curve_style(method: &str) -> CurveStyle {
         "r-admm" => ([0, 128, 96], [0, 178, 134], &[7.0, 3.0]),
         "w-admm" => ([170, 110, 0], [230, 159, 0], &[3.0, 3.0]),
         "admm-pd" => ([110, 114, 120], [160, 165, 172], &[1.5, 3.0]),
+        "l-bfgs" => ([126, 96, 62], [196, 166, 128], &[9.0, 3.0, 3.0, 3.0]),
         "arap" => ([164, 76, 130], [204, 121, 167], &[7.0, 3.0, 1.5, 3.0]),
         _ => ([90, 94, 100], [180, 184, 190], &[]),
     };
@@ -78,6 +100,8 @@ pub struct Theme {
     pub check_light: Rgb,
     /// The dark square of the checkerboard.
     pub check_dark: Rgb,
+    /// A solid's skin.
+    pub skin: Rgb,
     /// Outline of inverted triangles, boundary of the map.
     pub outline: Rgb,
     /// Text and marks that warn.
@@ -94,6 +118,7 @@ pub const LIGHT: Theme = Theme {
     accent: [0, 99, 155],
     check_light: [235, 235, 232],
     check_dark: [205, 206, 205],
+    skin: [196, 204, 214],
     outline: [30, 18, 8],
     warn: [173, 62, 0],
 };
@@ -108,6 +133,7 @@ pub const DARK: Theme = Theme {
     accent: [102, 187, 238],
     check_light: [178, 180, 182],
     check_dark: [146, 149, 152],
+    skin: [150, 164, 182],
     outline: [10, 6, 3],
     warn: [255, 140, 66],
 };
@@ -157,7 +183,7 @@ mod tests {
         assert_eq!(ramp_position(1.0), 0.0);
         assert!((ramp_position(2.0) - 0.5).abs() < 1e-12);
         assert_eq!(ramp_position(f64::INFINITY), 1.0);
-        assert_eq!(ramp_texels(256).len(), 1024);
+        assert_eq!(ramp_texels(256).len(), 2048);
     }
 
     #[test]
@@ -175,7 +201,7 @@ mod tests {
 
     #[test]
     fn solver_curves_are_visible_and_distinct() {
-        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "arap"];
+        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "arap"];
         for (i, a) in methods.iter().enumerate() {
             assert!(contrast(curve_style(a).light, LIGHT.ground) >= 3.0, "{a}");
             assert!(contrast(curve_style(a).dark, DARK.ground) >= 3.0, "{a}");

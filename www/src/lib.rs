@@ -13,6 +13,7 @@ pub mod history;
 pub mod layout;
 pub mod outline;
 pub mod scale;
+pub mod solid;
 pub mod words;
 
 #[cfg(target_arch = "wasm32")]

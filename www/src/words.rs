@@ -13,8 +13,51 @@ pub struct Explanation {
     pub equation: &'static str,
     /// What `count` counts, if that is worth a word: singular, plural.
     pub unit: Option<[&'static str; 2]>,
-    /// One sentence.
-    pub sentence: &'static str,
+    /// One sentence, with {element}, {elements} and {whole} to be filled in.
+    sentence: &'static str,
+}
+
+/// What a mode calls things.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Nouns {
+    /// One element.
+    pub element: &'static str,
+    /// Several.
+    pub elements: &'static str,
+    /// How far off an element's shape is, at worst.
+    pub worst: &'static str,
+    /// That, in symbols.
+    pub formula: &'static str,
+    /// The whole.
+    pub whole: &'static str,
+}
+
+/// Words for surfaces and their maps.
+pub const SURFACE: Nouns = Nouns {
+    element: "triangle",
+    elements: "triangles",
+    worst: "worst distortion",
+    formula: "max(σ₁, 1/σ₂)",
+    whole: "map",
+};
+
+/// Words for solids.
+pub const SOLID: Nouns = Nouns {
+    element: "tetrahedron",
+    elements: "tetrahedra",
+    worst: "worst stretch",
+    formula: "max(σ₁, 1/σ₃)",
+    whole: "shape",
+};
+
+impl Explanation {
+    /// The sentence, in the words of a mode.
+    pub fn sentence(&self, nouns: Nouns) -> String {
+        self.sentence
+            .replace("{elements}", nouns.elements)
+            .replace("{element}", nouns.element)
+            .replace("{whole}", nouns.whole)
+    }
 }
 
 /// A method's name as people write it.
@@ -24,6 +67,7 @@ pub fn method_name(method: &str) -> &str {
         "r-admm" => "R-ADMM",
         "w-admm" => "W-ADMM",
         "admm-pd" => "ADMM-PD",
+        "l-bfgs" => "L-BFGS",
         "arap" => "ARAP",
         "lscm" => "LSCM",
         "harmonic" => "Harmonic",
@@ -37,6 +81,7 @@ pub fn citation(method: &str) -> &'static str {
     match method {
         "wrapd" | "r-admm" | "w-admm" => "Brown & Narain 2021",
         "admm-pd" => "Overby et al. 2017",
+        "l-bfgs" => "Liu et al. 2017",
         "arap" => "Liu et al. 2008",
         "lscm" => "Lévy et al. 2002",
         "harmonic" => "Eck et al. 1995",
@@ -55,35 +100,49 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
             symbol: "Rᵢ ← rotation of Fᵢ",
             equation: "Liu 2008",
             unit: None,
-            sentence: "Every triangle on its own finds the rotation nearest to its Jacobian.",
+            sentence: "Every {element} on its own finds the rotation nearest to its Jacobian.",
         },
         ("arap", PhaseKind::Global) => Explanation {
             name: "Global",
             symbol: "A X = B(R)",
             equation: "Liu 2008",
             unit: Some(["solve", "solves"]),
-            sentence: "One linear solve with a factor made once puts the vertices where the rotated triangles want them.",
+            sentence: "One linear solve with a factor made once puts the vertices where the rotated {elements} want them.",
         },
         ("lscm" | "harmonic" | "tutte", PhaseKind::Global | PhaseKind::Local) => Explanation {
             name: "Solve",
             symbol: "A X = B",
             equation: "direct",
             unit: Some(["solve", "solves"]),
-            sentence: "The whole map is the solution of one sparse linear system; there is nothing to iterate.",
+            sentence: "The whole {whole} is the solution of one sparse linear system; there is nothing to iterate.",
+        },
+        ("l-bfgs", PhaseKind::Global) => Explanation {
+            name: "Global",
+            symbol: "D ← −H ∇E(X)",
+            equation: "Liu 2017",
+            unit: Some(["direction", "directions"]),
+            sentence: "All vertices together: a quasi-Newton direction, begun from the factored Laplacian.",
+        },
+        ("l-bfgs", PhaseKind::Evaluate) => Explanation {
+            name: "Line search",
+            symbol: "E(X + αD) low enough",
+            equation: "Armijo",
+            unit: Some(["trial", "trials"]),
+            sentence: "Energy and gradient of all {elements} at full step; half of it, and so on, until the energy falls.",
         },
         (_, PhaseKind::Local) if rotation_aware => Explanation {
             name: "Local",
             symbol: "Zᵢ ← prox(sym Fᵢ + Uᵢ)",
             equation: "(10b), (10c)",
             unit: None,
-            sentence: "Every triangle on its own trades its energy against staying near its own stretch, by singular values; then the multipliers Uᵢ grow by what is left between them.",
+            sentence: "Every {element} on its own trades its energy against staying near its own stretch, by singular values; then the multipliers Uᵢ grow by what is left between them.",
         },
         (_, PhaseKind::Local) => Explanation {
             name: "Local",
             symbol: "Zᵢ ← prox(Fᵢ + Uᵢ)",
             equation: "(4b), (4c)",
             unit: None,
-            sentence: "Every triangle on its own trades its energy against staying near its Jacobian, rotation included; then the multipliers Uᵢ grow by what is left between them.",
+            sentence: "Every {element} on its own trades its energy against staying near its Jacobian, rotation included; then the multipliers Uᵢ grow by what is left between them.",
         },
         (_, PhaseKind::Global) if rotation_aware => Explanation {
             name: "Global",
@@ -104,21 +163,27 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
             symbol: "wᵢ² ← clamp(Aᵢ Kₑ(σ))",
             equation: "(20)–(24)",
             unit: Some(["factor", "factors"]),
-            sentence: "Some weight was off by more than 1.5: every triangle takes its present stiffness as its weight, and the Laplacian is factored anew.",
+            sentence: "Some weight was off by more than 1.5: every {element} takes its present stiffness as its weight, and the Laplacian is factored anew.",
         },
         (_, PhaseKind::Evaluate) => Explanation {
             name: "Evaluate",
             symbol: "E(X), inverted",
             equation: "(1a)",
             unit: None,
-            sentence: "Energy, gradient and inverted triangles of the new iterate decide whether to go on.",
+            sentence: "Energy, gradient and inverted {elements} of the new iterate decide whether to go on.",
         },
     }
 }
 
 /// What the energy of the run counts, with the value of an isometry.
-pub fn energy_caption(energy: &str) -> &'static str {
-    if energy == "arap" {
+pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
+    if solid {
+        match energy {
+            "symmetric-dirichlet" => "energy (undeformed: 1)",
+            "dirichlet" => "energy",
+            _ => "energy (undeformed: 0)",
+        }
+    } else if energy == "arap" {
         "energy (isometry: 0)"
     } else {
         "energy (isometry: 1)"
@@ -132,7 +197,7 @@ mod tests {
     #[test]
     fn every_phase_of_every_method_is_explained() {
         for method in [
-            "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
+            "wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "arap", "lscm", "harmonic", "tutte",
         ] {
             assert!(!citation(method).is_empty());
             for kind in [
@@ -142,11 +207,23 @@ mod tests {
                 PhaseKind::Evaluate,
             ] {
                 let e = explain(method, kind);
-                assert!(
-                    e.sentence.ends_with('.') && !e.symbol.is_empty() && !e.equation.is_empty()
-                );
+                for nouns in [SURFACE, SOLID] {
+                    let sentence = e.sentence(nouns);
+                    assert!(
+                        sentence.ends_with('.') && !sentence.contains('{'),
+                        "{sentence}"
+                    );
+                }
+                assert!(!e.symbol.is_empty() && !e.equation.is_empty());
             }
         }
+    }
+
+    #[test]
+    fn sentences_speak_of_what_is_on_the_bench() {
+        let local = explain("wrapd", PhaseKind::Local);
+        assert!(local.sentence(SURFACE).contains("Every triangle"));
+        assert!(local.sentence(SOLID).contains("Every tetrahedron"));
     }
 
     #[test]

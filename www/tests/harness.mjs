@@ -1,6 +1,8 @@
 // A browser on the built page, for the end-to-end tests.
+import assert from 'node:assert/strict';
 import { existsSync } from 'node:fs';
 import { join } from 'node:path';
+import { test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 import { serve } from '../../scripts/serve.mjs';
@@ -50,6 +52,30 @@ export async function openPage({ browser, url }, { query = '', ready = true, pre
   await page.goto(new URL(query, url).href);
   if (ready) await page.waitForSelector('body[data-solver="ready"]', { state: 'attached' });
   return { page, troubles, close: () => made.close() };
+}
+
+/**
+ * Makes tests on a page of their own, which must end without a word on the console: `(name, options, body)`;
+ * `once(options, body)` is one such page without a test around it.
+ */
+export function onPageOf(site) {
+  const once = async (options, body) => {
+    const opened = await openPage(site(), options);
+    try {
+      await body(opened.page);
+      assert.deepEqual(opened.troubles, []);
+    } finally {
+      await opened.close();
+    }
+  };
+  return Object.assign((name, options, body) => test(name, () => once(options, body)), { once });
+}
+
+/** No accessibility violation that axe knows of. */
+export async function audit(page, where) {
+  await page.addScriptTag({ path: join(root, 'node_modules/axe-core/axe.min.js') });
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  assert.deepEqual(violations.map((v) => `${where}: ${v.id} ${v.nodes.map((n) => n.target).join(' ')}`), []);
 }
 
 /** The status line as numbers. */

@@ -5,24 +5,13 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { initSync } from '../../pkg/core.js';
 import { preparedStart } from '../prepare-start.mjs';
-import { download, drop, launch, openPage, playToTheEnd, root, status, wavySheet } from './harness.mjs';
+import { audit, download, drop, launch, onPageOf, openPage, playToTheEnd, root, status, wavySheet } from './harness.mjs';
 
 let site;
 before(async () => { site = await launch(); });
 after(() => site?.close());
 
-/** A test on a page of its own, which must end without a word on the console. */
-function onPage(name, options, body) {
-  test(name, async () => {
-    const opened = await openPage(site, options);
-    try {
-      await body(opened.page);
-      assert.deepEqual(opened.troubles, []);
-    } finally {
-      await opened.close();
-    }
-  });
-}
+const onPage = onPageOf(() => site);
 
 describe('opening', () => {
   test('the prepared start is up to date (else: node www/prepare-start.mjs)', () => {
@@ -198,12 +187,6 @@ describe('files', () => {
 });
 
 describe('for everybody', () => {
-  const audit = async (page, where) => {
-    await page.addScriptTag({ path: join(root, 'node_modules/axe-core/axe.min.js') });
-    const { violations } = await page.evaluate(() => globalThis.axe.run());
-    assert.deepEqual(violations.map((v) => `${where}: ${v.id} ${v.nodes.map((n) => n.target).join(' ')}`), []);
-  };
-
   for (const colorScheme of ['light', 'dark']) {
     onPage(`no accessibility violation, ${colorScheme}`, { colorScheme, query: '?triangles=1000', viewport: { width: 1300, height: 800 } }, async (page) => {
       await audit(page, 'start');
@@ -218,8 +201,8 @@ describe('for everybody', () => {
 
   onPage('a phone shows one view at a time', { query: '?triangles=1000', viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true }, async (page) => {
     await audit(page, 'phone');
-    await page.tap('[data-view="plot"]');
-    assert.equal(await page.getAttribute('[data-view="plot"]', 'aria-selected'), 'true');
+    await page.tap('[role="tab"][data-view="plot"]');
+    assert.equal(await page.getAttribute('[role="tab"][data-view="plot"]', 'aria-selected'), 'true');
     await page.tap('#step');
     await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
     await page.tap('#setup-toggle');

@@ -7,22 +7,23 @@ use eframe::egui::{self, Rect, Stroke, UiBuilder, pos2, vec2};
 use wasm_bindgen::JsValue;
 
 use super::bench::{Bench, Event};
-use super::{inspector, map, plot, shape, style};
+use super::stage::Stage;
+use super::{inspector, map, plot, shape, solid, style};
 use crate::colour::Theme;
 use crate::layout::{self, View};
 
 /// The app.
 pub struct Page {
-    bench: Rc<RefCell<Bench>>,
+    stage: Rc<RefCell<Stage>>,
     listen: js_sys::Function,
     styled: Option<(Theme, f32)>,
 }
 
 impl Page {
-    /// An app that draws `bench` and reports to `listen`.
-    pub fn new(bench: Rc<RefCell<Bench>>, listen: js_sys::Function) -> Self {
+    /// An app that draws the bench on show and reports to `listen`.
+    pub fn new(stage: Rc<RefCell<Stage>>, listen: js_sys::Function) -> Self {
         Self {
-            bench,
+            stage,
             listen,
             styled: None,
         }
@@ -31,31 +32,47 @@ impl Page {
 
 impl eframe::App for Page {
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {
-        style::colour(self.bench.borrow().theme.ground).to_normalized_gamma_f32()
+        style::colour(self.stage.borrow().shown().theme.ground).to_normalized_gamma_f32()
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let events = {
-            let mut bench = self.bench.borrow_mut();
+            let mut stage = self.stage.borrow_mut();
+            let bench = stage.shown_mut();
             if self.styled != Some((bench.theme, bench.text)) {
                 self.styled = Some((bench.theme, bench.text));
-                style::follow(ui.ctx(), &bench);
+                style::follow(ui.ctx(), bench);
             }
             bench.refresh();
-            draw(ui, &mut bench);
+            draw(ui, bench);
             std::mem::take(&mut bench.events)
         };
         // The bench is free again: the page may answer at once.
         for event in events {
-            let (name, value) = match event {
-                Event::Show(index) => ("show", index as f64),
-            };
-            let _ = self.listen.call2(
-                &JsValue::NULL,
-                &JsValue::from_str(name),
-                &JsValue::from_f64(value),
-            );
+            let (name, value) = spell(event);
+            let name = JsValue::from_str(name);
+            let _ = self.listen.call2(&JsValue::NULL, &name, &value);
         }
+    }
+}
+
+/// An event as the page hears it.
+fn spell(event: Event) -> (&'static str, JsValue) {
+    match event {
+        Event::Show(index) => ("show", JsValue::from_f64(index as f64)),
+        Event::Pin(vertices) => ("pin", js_sys::Uint32Array::from(&vertices[..]).into()),
+        Event::Select(handle) => (
+            "select",
+            JsValue::from_f64(handle.map_or(-1.0, |i| i as f64)),
+        ),
+        Event::GrabHandle(handle) => ("grab-handle", JsValue::from_f64(handle as f64)),
+        Event::GrabVertex(vertex) => ("grab-vertex", JsValue::from_f64(f64::from(vertex))),
+        Event::Drag(delta) => {
+            let delta = delta.as_dvec3().to_array();
+            ("drag", js_sys::Float64Array::from(&delta[..]).into())
+        }
+        Event::Turn(angle) => ("turn", JsValue::from_f64(f64::from(angle))),
+        Event::Drop => ("drop", JsValue::UNDEFINED),
     }
 }
 
@@ -74,6 +91,8 @@ fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
         ui.scope_builder(UiBuilder::new().max_rect(rect).id_salt(*view as u8), |ui| {
             ui.set_clip_rect(rect);
             match view {
+                View::Shape if bench.body.is_some() => solid::show_skin(ui, rect, bench),
+                View::Map if bench.body.is_some() => solid::show_cut(ui, rect, bench),
                 View::Shape => shape::show(ui, rect, bench),
                 View::Map => hover = map::show(ui, rect, bench),
                 View::Plot => plot::show(ui, rect, bench),

@@ -1,14 +1,16 @@
 //! The state of the bench: the problem, its runs, what is shown and how.
 
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::gpu::{self, Look, MapData};
+use super::solid::Body;
 use crate::camera::{Orbit, Pan};
 use crate::colour::{DARK, LIGHT, Theme};
 use crate::distortion::RestShapes;
 use crate::history::{Frames, Record, Run};
 use crate::layout::View;
 use crate::outline;
+use crate::words::{Nouns, SOLID, SURFACE};
 
 /// Memory for the iterates of one run.
 const FRAME_BUDGET: usize = 192 << 20;
@@ -56,12 +58,28 @@ impl PlotHeight {
 pub enum Event {
     /// A person chose an iterate on the plot.
     Show(usize),
+    /// Vertices are to be held together.
+    Pin(Vec<u32>),
+    /// A handle was chosen, or none.
+    Select(Option<usize>),
+    /// A handle is being dragged from now on.
+    GrabHandle(usize),
+    /// A vertex is being pulled from now on.
+    GrabVertex(u32),
+    /// How far what is dragged has come since it was grabbed.
+    Drag(Vec3),
+    /// How far what is dragged is turned, in radians, about an axis the page knows.
+    Turn(f32),
+    /// It was let go.
+    Drop,
 }
 
 /// The whole state; the views draw it, the page's JavaScript changes it.
 pub struct Bench {
-    /// The surface.
+    /// The surface, where a surface is on the bench.
     pub problem: Problem,
+    /// The solid, where a solid is on the bench.
+    pub body: Option<Body>,
     /// The run on the bench.
     pub run: Run,
     /// Its maps.
@@ -128,6 +146,7 @@ impl Bench {
     pub fn new() -> Self {
         Self {
             problem: Problem::default(),
+            body: None,
             run: Run::default(),
             frames: Frames::new(FRAME_BUDGET),
             earlier: Vec::new(),
@@ -180,6 +199,11 @@ impl Bench {
             seam.extend_from_slice(&single[3 * *v as usize..][..3]);
         }
         gpu::with(|gpu| gpu.set_surface(&corners, &corner_normals, &seam));
+        self.forget_runs();
+    }
+
+    /// Forgets all runs.
+    pub fn forget_runs(&mut self) {
         self.earlier.clear();
         self.crossings.clear();
         self.run = Run::default();
@@ -214,9 +238,13 @@ impl Bench {
         (self.shown, self.shown_map) = (0, 0);
     }
 
-    /// Adds an iterate to the run.
+    /// Adds an iterate to the run: its map, or the solid's positions and stresses.
     pub fn push(&mut self, record: Record, map: Vec<f32>) {
-        if map.len() != 2 * self.problem.vertices {
+        let fits = self.body.as_ref().map_or_else(
+            || map.len() == 2 * self.problem.vertices,
+            |body| body.fits(&map),
+        );
+        if !fits {
             return;
         }
         self.frames.push(self.run.records.len(), map);
@@ -224,6 +252,18 @@ impl Bench {
         if self.run.records.len() == 1 {
             self.show(0);
         }
+    }
+
+    /// Adds an iterate of which only the numbers are known.
+    pub fn push_numbers(&mut self, record: Record) {
+        if !self.run.records.is_empty() {
+            self.run.records.push(record);
+        }
+    }
+
+    /// Draws the iterate on show anew.
+    pub fn redraw(&mut self) {
+        self.stale = true;
     }
 
     /// Shows an iterate, the newest if there is none such.
@@ -251,6 +291,10 @@ impl Bench {
             return;
         };
         self.shown_map = index;
+        if let Some(body) = &mut self.body {
+            body.refresh(map);
+            return;
+        }
         let indices = &self.problem.indices;
         let scratch = &mut self.scratch;
         self.inverted = self
@@ -292,6 +336,18 @@ impl Bench {
             hover: self.hover,
             tint: if self.tinted { 0.62 } else { 0.0 },
         }
+    }
+
+    /// What things are called on this bench.
+    pub fn nouns(&self) -> Nouns {
+        if self.body.is_some() { SOLID } else { SURFACE }
+    }
+
+    /// Inverted or collapsed elements of the iterate on show, as drawn.
+    pub fn drawn_inverted(&self) -> usize {
+        self.body
+            .as_ref()
+            .map_or(self.inverted.len(), |body| body.inverted.len())
     }
 
     /// Follows the page's theme.

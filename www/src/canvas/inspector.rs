@@ -44,6 +44,14 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     }
 }
 
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    letters
+        .next()
+        .map(|first| first.to_uppercase().chain(letters).collect())
+        .unwrap_or_default()
+}
+
 impl Column<'_> {
     fn text(&self, x: f32, y: f32, anchor: Align2, text: &str, medium: bool, quiet: bool) -> Rect {
         let theme = self.bench.theme;
@@ -114,6 +122,7 @@ impl Column<'_> {
 
     /// The phases of the iteration on show.
     fn step(&mut self) {
+        let nouns = self.bench.nouns();
         let method = self.bench.run.method.as_str();
         let Some(record) = self.bench.record() else {
             self.section("This step", "");
@@ -224,7 +233,7 @@ impl Column<'_> {
                     self.ui.scope_id().with((phase.kind as u8, "phase")),
                     Sense::hover(),
                 )
-                .on_hover_text(words.sentence);
+                .on_hover_text(words.sentence(nouns));
             self.y = bar + 9.0;
         }
         if record.phases.is_empty() {
@@ -236,7 +245,7 @@ impl Column<'_> {
             "kept"
         };
         if matches!(method, "wrapd" | "w-admm") {
-            self.pair("weights", weights, "Weights change only when some triangle's is off by more than γ = 1.5, equation (23); then the Laplacian is factored again and the L-BFGS history is dropped.");
+            self.pair("weights", weights, &format!("Weights change only when that of some {} is off by more than γ = 1.5, equation (23); then the Laplacian is factored again and the L-BFGS history is dropped.", nouns.element));
         }
         self.rule();
     }
@@ -247,15 +256,29 @@ impl Column<'_> {
             return;
         };
         self.section("This iterate", "");
-        let isometry = if self.bench.energy == "arap" {
-            "0"
-        } else {
-            "1"
-        };
+        let nouns = self.bench.nouns();
         let energy = number(record.energy, 7);
-        self.pair("energy (relative)", &energy, &format!("Surface scaled to unit area; an isometry has {isometry}. While triangles are inverted it is that of the local variables Z."));
-        self.pair("inverted triangles", &record.inverted.to_string(), "Triangles whose corners run the wrong way round in the map: there it folds over itself.");
-        self.pair("worst distortion", &number(record.worst_distortion(), 4), "max(σ₁, 1/σ₂) over the triangles; 1 for an isometry, without bound while one is inverted.");
+        if self.bench.body.is_some() {
+            self.pair("energy", &energy, "Elastic energy, in the unit of the moduli times volume; relative for materials without moduli. While tetrahedra are inverted it is that of the local variables Z.");
+        } else {
+            let isometry = if self.bench.energy == "arap" {
+                "0"
+            } else {
+                "1"
+            };
+            self.pair("energy (relative)", &energy, &format!("Surface scaled to unit area; an isometry has {isometry}. While triangles are inverted it is that of the local variables Z."));
+        }
+        let elements = nouns.elements;
+        self.pair(
+            &format!("inverted {elements}"),
+            &record.inverted.to_string(),
+            &format!(
+                "{} that are turned inside out: there the {} passes through itself.",
+                capital(elements),
+                nouns.whole
+            ),
+        );
+        self.pair(nouns.worst, &number(record.worst_distortion(), 4), &format!("{} over the {elements}; 1 where no length changes, without bound while one is inverted.", nouns.formula));
         let range = format!(
             "{} … {}",
             number(record.smallest_sigma, 3),
@@ -264,7 +287,7 @@ impl Column<'_> {
         self.pair(
             "singular values",
             &range,
-            "The least and the greatest factor by which the map scales a length (relative).",
+            "The least and the greatest factor by which a length is scaled (relative).",
         );
         self.pair(
             "gradient",

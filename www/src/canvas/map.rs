@@ -1,11 +1,12 @@
 //! The map in 2D: distortion colours, what is inverted, and the legend.
 
-use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
+use eframe::egui::{self, Align2, Pos2, Rect, Sense, Stroke, pos2, vec2};
 use glam::{Mat4, Vec2, Vec3};
 
 use super::bench::Bench;
+use super::legend::{self, Legend};
 use super::{gpu, style};
-use crate::colour::{self, DISTORTION_END, VERMILION};
+use crate::colour::{self, VERMILION};
 use crate::distortion::{corners_of, triangle_at};
 use crate::outline::meeting;
 use crate::scale::{number, whole};
@@ -15,6 +16,21 @@ const MOST_RINGS: usize = 80;
 
 /// Crosses drawn where the boundary meets itself, at most.
 const MOST_CROSSES: usize = 200;
+
+const LEGEND: Legend = Legend {
+    caption: "stretch or squeeze, max(σ₁, 1/σ₂)",
+    short: "stretch or squeeze",
+    ramp: colour::cividis,
+    position: |value| colour::ramp_position(value) as f32,
+    ticks: &[
+        (1.0, "1"),
+        (1.5, "1.5"),
+        (2.0, "2"),
+        (3.0, "3"),
+        (4.0, "4+"),
+    ],
+    clamped_below: false,
+};
 
 /// Draws the view and answers the pointer; returns the triangle under it.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
@@ -73,8 +89,9 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
     if let Some(text) = found.and_then(|t| describe(bench, t)) {
         response.on_hover_text_at_pointer(text);
     }
-    legend(ui.painter(), rect, bench);
-    let right = inverted_key(ui.painter(), rect, bench);
+    legend::ramp(ui.painter(), rect, bench, &LEGEND);
+    crossings_key(ui.painter(), rect, bench);
+    let right = legend::inverted_key(ui.painter(), rect, bench, bench.inverted.len());
     let away = if bench.pan.follows {
         String::new()
     } else {
@@ -169,76 +186,6 @@ fn crossings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
     }
 }
 
-/// The ramp with its ticks, the mark of clamped values, the hatch of inverted ones.
-fn legend(painter: &egui::Painter, rect: Rect, bench: &Bench) {
-    let (theme, text) = (bench.theme, bench.text);
-    let width = (0.36 * rect.width()).clamp(90.0, 190.0 * text);
-    let bar_height = 9.0 * text;
-    let left = rect.left() + 16.0;
-    let bottom = rect.bottom() - 14.0 - 16.0 * text;
-    let bar = Rect::from_min_max(pos2(left, bottom - bar_height), pos2(left + width, bottom));
-    let swatch = Rect::from_min_size(pos2(bar.right(), bar.top()), vec2(16.0 * text, bar_height));
-    let caption = if rect.width() > 260.0 * text {
-        "stretch or squeeze, max(σ₁, 1/σ₂)"
-    } else {
-        "stretch or squeeze"
-    };
-    let ground = Rect::from_min_max(
-        pos2(rect.left() + 8.0, bar.top() - 22.0 * text),
-        pos2(
-            (swatch.right() + 12.0).max(left + 205.0 * text),
-            rect.bottom() - 8.0,
-        ),
-    );
-    painter.rect_filled(
-        ground,
-        4.0,
-        style::colour(theme.ground).gamma_multiply(0.85),
-    );
-    painter.text(
-        pos2(left, bar.top() - 4.0),
-        Align2::LEFT_BOTTOM,
-        caption,
-        style::regular(style::SMALL * text),
-        style::colour(theme.quiet),
-    );
-    const STEPS: usize = 96;
-    for i in 0..STEPS {
-        let t = (i as f64 + 0.5) / STEPS as f64;
-        let x = |k: usize| bar.left() + bar.width() * k as f32 / STEPS as f32;
-        let cell = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1) + 0.5, bar.bottom()));
-        painter.rect_filled(cell, 0.0, style::colour(colour::cividis(t)));
-    }
-    painter.rect_filled(swatch, 0.0, style::colour(colour::cividis(1.0)));
-    for (i, j) in [(0, 0), (1, 1), (2, 0)] {
-        let dot = swatch.min
-            + vec2(
-                swatch.width() * (i as f32 + 0.5) / 3.0,
-                bar_height * (0.3 + 0.4 * j as f32),
-            );
-        painter.circle_filled(dot, 1.0, Color32::from_rgb(90, 72, 0));
-    }
-    for value in [1.0, 1.5, 2.0, 3.0, DISTORTION_END] {
-        let x = bar.left() + bar.width() * colour::ramp_position(value) as f32;
-        painter.line_segment(
-            [pos2(x, bar.bottom()), pos2(x, bar.bottom() + 3.0)],
-            Stroke::new(1.0, style::colour(theme.quiet)),
-        );
-        let name = if value == DISTORTION_END {
-            "4+".into()
-        } else {
-            format!("{value}")
-        };
-        painter.text(
-            pos2(x, bar.bottom() + 4.0),
-            Align2::CENTER_TOP,
-            name,
-            style::regular(style::SMALL * text),
-            style::colour(theme.quiet),
-        );
-    }
-}
-
 /// How often the boundary of the newest map meets itself.
 fn crossings_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
     let newest = bench.shown + 1 == bench.run.records.len();
@@ -265,62 +212,4 @@ fn crossings_key(painter: &egui::Painter, rect: Rect, bench: &Bench) {
             Stroke::new(1.8, style::colour(VERMILION)),
         );
     }
-}
-
-/// How many are inverted, with their hatch; returns its left edge.
-fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench) -> f32 {
-    let (theme, text) = (bench.theme, bench.text);
-    let reported = bench
-        .record()
-        .map_or(bench.inverted.len(), |r| r.inverted as usize);
-    let words = if reported == 0 {
-        "none inverted".to_owned()
-    } else {
-        format!("{} inverted", whole(reported))
-    };
-    crossings_key(painter, rect, bench);
-    let ink = if reported == 0 {
-        theme.quiet
-    } else {
-        theme.warn
-    };
-    let at = pos2(rect.right() - 14.0, rect.top() + 10.0);
-    let galley =
-        painter.layout_no_wrap(words, style::medium(style::BODY * text), style::colour(ink));
-    let place = Align2::RIGHT_TOP.anchor_size(at, galley.size());
-    painter.rect_filled(
-        place.expand2(vec2(26.0 * text, 3.0)).intersect(rect),
-        4.0,
-        style::colour(theme.ground).gamma_multiply(0.8),
-    );
-    let middle = place.center().y;
-    painter.galley(place.min, galley, style::colour(ink));
-    let side = 13.0 * text;
-    let key = Rect::from_center_size(
-        pos2(place.left() - 0.5 * side - 7.0, middle),
-        vec2(side, side),
-    );
-    if reported == 0 {
-        return place.left() - 12.0;
-    }
-    painter.rect_filled(key, 0.0, Color32::from_rgb(255, 230, 209));
-    let clip = painter.with_clip_rect(key);
-    for k in -3..4 {
-        let x = key.center().x + k as f32 * 5.0 * text;
-        clip.add(Shape::line_segment(
-            [
-                pos2(x - side, key.center().y - side),
-                pos2(x + side, key.center().y + side),
-            ],
-            Stroke::new(2.4 * text, style::colour(VERMILION)),
-        ));
-    }
-    let outline = if theme.dark { theme.ink } else { theme.outline };
-    painter.rect_stroke(
-        key,
-        0.0,
-        Stroke::new(1.0, style::colour(outline)),
-        egui::StrokeKind::Inside,
-    );
-    key.left() - 12.0
 }

@@ -3,10 +3,14 @@
 mod app;
 mod bench;
 mod gpu;
+mod handle;
 mod inspector;
+mod legend;
 mod map;
 mod plot;
 mod shape;
+mod solid;
+mod stage;
 mod style;
 
 use std::cell::RefCell;
@@ -16,14 +20,15 @@ use eframe::egui;
 use wasm_bindgen::prelude::*;
 use web_sys::HtmlCanvasElement;
 
-use crate::history::Record;
 use crate::layout::View;
 use bench::Bench;
+use handle::BenchHandle;
+use stage::{Mode, Stage};
 
 /// The canvas of the page. All arrays are copied.
 #[wasm_bindgen]
 pub struct Canvas {
-    bench: Rc<RefCell<Bench>>,
+    stage: Rc<RefCell<Stage>>,
     context: egui::Context,
     _runner: eframe::WebRunner,
 }
@@ -31,12 +36,14 @@ pub struct Canvas {
 #[wasm_bindgen]
 impl Canvas {
     /// Starts drawing on a canvas element. `listen(name, value)` hears what people do on it:
-    /// `("show", index)` when an iterate is chosen on the plot.
+    /// `show` (an iterate was chosen on the plot: its index); on a solid `pin` (vertices),
+    /// `select` (a handle's index or -1), `grab-handle` (its index), `grab-vertex` (the vertex), `drag`
+    /// (x y z, how far it has come since), `turn` (by how many radians since), `drop`.
     pub async fn start(
         element: HtmlCanvasElement,
         listen: js_sys::Function,
     ) -> Result<Canvas, JsValue> {
-        let bench = Rc::new(RefCell::new(Bench::new()));
+        let stage = Rc::new(RefCell::new(Stage::new()));
         let context = Rc::new(RefCell::new(None));
         let runner = eframe::WebRunner::new();
         let options = eframe::WebOptions {
@@ -48,12 +55,12 @@ impl Canvas {
             ..Default::default()
         };
         let app = {
-            let (bench, context, element) = (bench.clone(), context.clone(), element.clone());
+            let (stage, context, element) = (stage.clone(), context.clone(), element.clone());
             move |creation: &eframe::CreationContext<'_>| {
                 gpu::start(&element).map_err(|error| format!("{error:?}"))?;
                 style::install(&creation.egui_ctx);
                 *context.borrow_mut() = Some(creation.egui_ctx.clone());
-                Ok(Box::new(app::Page::new(bench, listen)) as Box<dyn eframe::App>)
+                Ok(Box::new(app::Page::new(stage, listen)) as Box<dyn eframe::App>)
             }
         };
         runner.start(element, options, Box::new(app)).await?;
@@ -61,111 +68,58 @@ impl Canvas {
             .take()
             .ok_or_else(|| JsValue::from_str("the canvas did not start"))?;
         Ok(Self {
-            bench,
+            stage,
             context,
             _runner: runner,
         })
     }
 
-    /// Puts a surface on the bench: positions (n×3) in its own unit, triangles (m×3).
-    #[wasm_bindgen(js_name = setProblem)]
-    pub fn set_problem(&self, positions: &[f64], indices: &[u32]) {
-        let n = positions.len() / 3;
-        if indices.iter().all(|i| (*i as usize) < n) {
-            self.change(|bench| bench.set_problem(positions, indices));
+    /// The bench of a mode (`flatten`, `deform`), or of the mode on show.
+    pub fn bench(&self, mode: &str) -> BenchHandle {
+        let mode = Mode::from_name(mode).unwrap_or_else(|| self.stage.borrow().mode());
+        BenchHandle::new(self.stage.clone(), self.context.clone(), mode)
+    }
+
+    /// Shows the bench of a mode (`flatten`, `deform`).
+    #[wasm_bindgen(js_name = setMode)]
+    pub fn set_mode(&self, name: &str) {
+        if let Some(mode) = Mode::from_name(name) {
+            self.stage.borrow_mut().choose(mode);
+            self.context.request_repaint();
         }
-    }
-
-    /// Begins a run of a method from a start, with an energy (kebab-case names as in the options).
-    #[wasm_bindgen(js_name = beginRun)]
-    pub fn begin_run(&self, method: &str, start: &str, energy: &str) {
-        self.change(|bench| bench.begin_run(method, start, energy));
-    }
-
-    /// Adds an iterate: nine numbers (iteration, energy, inverted, gradient norm, smallest σ,
-    /// largest σ, L-BFGS iterations, reweighted, seconds), three numbers a phase (kind, count,
-    /// milliseconds), and the map (n×2).
-    #[wasm_bindgen(js_name = pushFrame)]
-    pub fn push_frame(&self, numbers: &[f64], phases: &[f64], map: Vec<f32>) {
-        if let Some(record) = Record::from_numbers(numbers, phases) {
-            self.change(|bench| bench.push(record, map));
-        }
-    }
-
-    /// Shows an iterate.
-    #[wasm_bindgen(js_name = showFrame)]
-    pub fn show_frame(&self, index: usize) {
-        self.change(|bench| bench.show(index));
-    }
-
-    /// The map of an iterate (n×2), or of the newest kept one before it.
-    #[wasm_bindgen(js_name = frameMap)]
-    pub fn frame_map(&self, index: usize) -> Vec<f32> {
-        self.bench
-            .borrow()
-            .frames
-            .at(index)
-            .map(|(_, map)| map.to_vec())
-            .unwrap_or_default()
-    }
-
-    /// What the inspector says about the problem: names and values in turn.
-    #[wasm_bindgen(js_name = setFacts)]
-    pub fn set_facts(&self, facts: Vec<String>) {
-        let facts = facts.as_chunks::<2>().0.to_vec();
-        self.change(|bench| bench.facts = facts);
-    }
-
-    /// Pairs of boundary edges that meet where they should not in the newest map: four vertices each.
-    #[wasm_bindgen(js_name = setCrossings)]
-    pub fn set_crossings(&self, vertices: &[u32]) {
-        self.change(|bench| {
-            let n = bench.problem.vertices;
-            let pairs = vertices.as_chunks::<4>().0.iter();
-            bench.crossings = pairs
-                .filter(|pair| pair.iter().all(|v| (*v as usize) < n))
-                .map(|&[a, b, c, d]| [[a, b], [c, d]])
-                .collect();
-        });
-    }
-
-    /// Forgets the curves of earlier runs.
-    #[wasm_bindgen(js_name = clearCurves)]
-    pub fn clear_curves(&self) {
-        self.change(|bench| bench.earlier.clear());
     }
 
     /// Light or dark.
     #[wasm_bindgen(js_name = setTheme)]
     pub fn set_theme(&self, dark: bool) {
-        self.change(|bench| bench.set_dark(dark));
+        self.all(|bench| bench.set_dark(dark));
     }
 
     /// Size of text, 1 for a desk.
     #[wasm_bindgen(js_name = setTextScale)]
     pub fn set_text_scale(&self, scale: f32) {
-        self.change(|bench| bench.text = scale.clamp(0.5, 4.0));
+        self.all(|bench| bench.text = scale.clamp(0.5, 4.0));
     }
 
     /// Whether nothing may glide.
     #[wasm_bindgen(js_name = setReducedMotion)]
     pub fn set_reduced_motion(&self, reduced: bool) {
-        self.change(|bench| bench.reduced_motion = reduced);
+        self.all(|bench| bench.reduced_motion = reduced);
     }
 
     /// Shows one view (`shape`, `map`, `plot`, `inspector`) or, with any other name, all.
     #[wasm_bindgen(js_name = setView)]
     pub fn set_view(&self, name: &str) {
-        self.change(|bench| bench.alone = View::from_name(name));
+        self.all(|bench| bench.alone = View::from_name(name));
     }
 
     /// Shows or hides the inspector.
     #[wasm_bindgen(js_name = setInspector)]
     pub fn set_inspector(&self, shown: bool) {
-        self.change(|bench| bench.inspector = shown);
+        self.all(|bench| bench.inspector = shown);
     }
 
-    /// Turns a switch: `wireframe`, `tinted`, `gap`, `seconds`.
+    /// Turns a switch of the bench on show: `wireframe`, `tinted`, `gap`, `seconds`.
     pub fn toggle(&self, name: &str) {
         self.change(|bench| match name {
             "wireframe" => bench.wireframe = !bench.wireframe,
@@ -176,7 +130,7 @@ impl Canvas {
         });
     }
 
-    /// Fits the surface and the map into their views again.
+    /// Fits what is on show into its views again.
     #[wasm_bindgen(js_name = fitViews)]
     pub fn fit_views(&self) {
         self.change(|bench| {
@@ -185,16 +139,22 @@ impl Canvas {
         });
     }
 
-    /// Inverted or collapsed triangles of the map on show, as drawn.
+    /// Inverted or collapsed elements of the iterate on show, as drawn.
     #[wasm_bindgen(getter, js_name = drawnInverted)]
     pub fn drawn_inverted(&self) -> usize {
-        let mut bench = self.bench.borrow_mut();
+        let mut stage = self.stage.borrow_mut();
+        let bench = stage.shown_mut();
         bench.refresh();
-        bench.inverted.len()
+        bench.drawn_inverted()
     }
 
     fn change(&self, f: impl FnOnce(&mut Bench)) {
-        f(&mut self.bench.borrow_mut());
+        f(self.stage.borrow_mut().shown_mut());
+        self.context.request_repaint();
+    }
+
+    fn all(&self, f: impl Fn(&mut Bench)) {
+        self.stage.borrow_mut().all().iter_mut().for_each(f);
         self.context.request_repaint();
     }
 }

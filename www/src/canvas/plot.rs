@@ -1,4 +1,4 @@
-//! Energy, worst distortion and inverted triangles against iteration or time, on a log scale.
+//! Energy, worst distortion and inverted elements against iteration or time, on a log scale.
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
@@ -11,6 +11,9 @@ use crate::words::{energy_caption, method_name};
 
 /// The least relative gap that is drawn.
 const LEAST_GAP: f64 = 1e-12;
+
+/// Energies of a solid below this part of the greatest are drawn at the bottom.
+const LEAST_OF_MOST: f64 = 1e-9;
 
 struct Frame {
     area: Rect,
@@ -117,7 +120,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             painter.extend(Shape::dashed_line(piece, Stroke::new(1.2, quiet), 5.0, 3.0));
         }
         if let Some(p) = worst.iter().rev().find_map(|piece| piece.last()) {
-            ends.push((p.y, "worst distortion", quiet));
+            ends.push((p.y, bench.nouns().worst, quiet));
         }
         inverted(&painter, &frame, records);
         if let Some(last) = records.last() {
@@ -148,7 +151,7 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     } else if gap {
         "(E − lowest) / lowest"
     } else {
-        energy_caption(&bench.energy)
+        energy_caption(&bench.energy, bench.body.is_some())
     };
     let horizontal = if bench.plot_seconds {
         "seconds"
@@ -234,6 +237,11 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
     let mut values: Vec<f64> = runs()
         .flat_map(|run| run.records.iter().filter_map(|r| frame.energy(r)))
         .collect();
+    if bench.body.is_some() && gap.is_none() {
+        // What is zero but for rounding (a solid at rest) does not stretch the axis.
+        let most = values.iter().copied().fold(0.0, f64::max);
+        values.retain(|v| *v >= LEAST_OF_MOST * most);
+    }
     if gap.is_none() {
         frame.floor = 17.0 * bench.text;
         for record in &bench.run.records {
@@ -325,7 +333,7 @@ fn draw(
     }
 }
 
-/// The count of inverted triangles as a stepped line with a dot at every iterate while they are few.
+/// The count of inverted elements as a stepped line with a dot at every iterate while they are few.
 fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
     let ink = style::colour(VERMILION);
     let place = |r: &Record| {
@@ -464,10 +472,11 @@ fn cursor(ui: &mut egui::Ui, rect: Rect, frame: &Frame, bench: &mut Bench) {
         );
         let worst = number(r.worst_distortion(), 4);
         let text = format!(
-            "iteration {} · {} s\nenergy {}\nworst distortion {worst}\n{} inverted",
+            "iteration {} · {} s\nenergy {}\n{} {worst}\n{} inverted",
             r.iteration,
             number(r.seconds, 3),
             number(r.energy, 6),
+            bench.nouns().worst,
             r.inverted
         );
         response.on_hover_text_at_pointer(text);

@@ -9,9 +9,13 @@ uniform vec3 u_accent;
 uniform vec3 u_outline;
 uniform vec3 u_vermilion;
 
+// One of the ramps: row 0 cividis, row 1 for quantities with a middle.
+vec3 ramp_at(float t, float row) {
+    return texture(u_ramp, vec2(t * (255.0 / 256.0) + 0.5 / 256.0, 0.25 + 0.5 * row)).rgb;
+}
+
 vec3 ramp(float distortion) {
-    float t = min(log(max(distortion, 1.0)) / u_end, 1.0);
-    return texture(u_ramp, vec2(t * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+    return ramp_at(min(log(max(distortion, 1.0)) / u_end, 1.0), 0.0);
 }
 
 // Diagonal stripes, 6 points apart: never only a colour.
@@ -29,18 +33,22 @@ vec3 clamped(vec3 colour) {
     return mix(vec3(0.35, 0.28, 0.0), colour, smoothstep(0.7, 1.2, d));
 }
 
-vec3 wires(vec3 colour, vec3 edge, float weight) {
-    vec3 width = fwidth(edge);
+vec3 wires(vec3 colour, vec3 edge, float weight, vec3 ink) {
+    vec3 width = max(fwidth(edge), vec3(1e-5)); // an edge that is not drawn has none
     vec3 near = smoothstep(vec3(0.0), width * 1.1 * u_pixel, edge);
     float line = 1.0 - min(near.x, min(near.y, near.z));
     // A triangle of a few pixels would be all line: fade.
     float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;
-    return mix(colour, u_outline, line * weight * smoothstep(3.0, 12.0, size));
+    return mix(colour, ink, line * weight * smoothstep(3.0, 12.0, size));
+}
+
+vec3 wires(vec3 colour, vec3 edge, float weight) {
+    return wires(colour, edge, weight, u_outline);
 }
 
 // Hatched, with a dark outline wherever there is room for one.
 vec3 inverted(vec3 edge) {
-    vec3 width = fwidth(edge);
+    vec3 width = max(fwidth(edge), vec3(1e-5)); // an edge that is not drawn has none
     vec3 near = smoothstep(width * 0.5 * u_pixel, width * 1.3 * u_pixel, edge);
     float line = 1.0 - min(near.x, min(near.y, near.z));
     float size = 1.0 / max(max(width.x, width.y), width.z) / u_pixel;

@@ -1,5 +1,9 @@
 //! What the canvas keeps on the graphics card, and how it is drawn (WebGL 2, safe bindings only).
 
+mod solid;
+
+pub use solid::{SolidData, SolidLook};
+
 use std::cell::RefCell;
 
 use glam::{Mat3, Mat4};
@@ -54,6 +58,7 @@ pub struct Gpu {
     shape: WebGlProgram,
     map: WebGlProgram,
     line: WebGlProgram,
+    solid: solid::SolidGpu,
     ramp: WebGlTexture,
     triangles: WebGlVertexArrayObject,
     seam: WebGlVertexArrayObject,
@@ -85,27 +90,28 @@ pub struct MapData<'a> {
 
 impl Gpu {
     fn new(gl: Gl) -> Result<Self, JsValue> {
-        let common = include_str!("shaders/common.glsl");
+        let common = include_str!("../shaders/common.glsl");
         let fragment = |source: &str| format!("#version 300 es\n{common}\n{source}");
         let missing = || JsValue::from_str("WebGL is out of memory");
         let buffer = || gl.create_buffer().ok_or_else(missing);
         let array = || gl.create_vertex_array().ok_or_else(missing);
         let ramp = gl.create_texture().ok_or_else(missing)?;
         let gpu = Self {
+            solid: solid::SolidGpu::new(&gl, common)?,
             shape: program(
                 &gl,
-                include_str!("shaders/shape.vert"),
-                &fragment(include_str!("shaders/shape.frag")),
+                include_str!("../shaders/shape.vert"),
+                &fragment(include_str!("../shaders/shape.frag")),
             )?,
             map: program(
                 &gl,
-                include_str!("shaders/map.vert"),
-                &fragment(include_str!("shaders/map.frag")),
+                include_str!("../shaders/map.vert"),
+                &fragment(include_str!("../shaders/map.frag")),
             )?,
             line: program(
                 &gl,
-                include_str!("shaders/line.vert"),
-                include_str!("shaders/line.frag"),
+                include_str!("../shaders/line.vert"),
+                include_str!("../shaders/line.frag"),
             )?,
             ramp,
             triangles: array()?,
@@ -167,7 +173,7 @@ impl Gpu {
             0,
             Gl::RGBA as i32,
             256,
-            1,
+            2,
             0,
             Gl::RGBA,
             Gl::UNSIGNED_BYTE,

@@ -1,0 +1,217 @@
+// The Flatten mode: a surface, its map, and the solver that unfolds it.
+import { DEFAULTS, isDefault, readAddress, writeAddress } from './address.js';
+import { preparedStart } from './canvas.js';
+import { readMeshFile, save } from './files.js';
+import { Mode } from './mode.js';
+import { clearNotice, describe, notice } from './notice.js';
+import { Session } from './session.js';
+import { METHODS, ending, number, whole } from './words.js';
+
+const $ = (id) => document.getElementById(id);
+const DIRECT = ['lscm', 'harmonic', 'tutte'];
+
+export class Flatten extends Mode {
+  static accepts = '.obj,.off,.ply,.stl,.mesh,.msh,.vtk,.gz';
+  static dropHere = 'Drop a surface to flatten it: OBJ, OFF, PLY, STL, MESH, MSH or VTK';
+  static first = 'map'; // the view a phone shows
+  static views = { map: 'Map', shape: 'Surface', plot: 'Plot', inspector: 'Step' };
+  wanted = readAddress('flatten'); // what the controls say
+  source = { sample: this.wanted.sample, triangles: this.wanted.triangles }; // what is, or will be, on the bench
+  #good = { ...this.wanted };
+
+  constructor(page) {
+    super(page, 'flatten');
+  }
+
+  /** Draws the prepared start, if it is what is wanted; says whether it did. */
+  async prepare() {
+    if (this.records.length || !isDefault('flatten', { ...this.wanted, ...this.source })) return this.records.length > 0;
+    const drawn = await preparedStart().catch(() => undefined);
+    if (!drawn || this.records.length) return this.records.length > 0;
+    this.bench.surface(drawn);
+    this.bench.begin(this.wanted.method, DEFAULTS.flatten.start, this.wanted.energy);
+    this.bench.push(drawn.start);
+    this.records = [drawn.start];
+    this.show(0);
+    this.invite();
+    return true;
+  }
+
+  /** The solver has come. */
+  async arrive(foldfree) {
+    this.session ??= new Session(foldfree);
+    listSamples(foldfree.shapes);
+    if (this.session.ready) return true;
+    const opened = await this.open(this.source);
+    if (opened && this.waiting) await this.catchUp();
+    else if (opened && this.wanted.steps) await this.steps(this.wanted.steps);
+    return opened;
+  }
+
+  invitation() {
+    const start = this.records[0];
+    const name = METHODS[this.wanted.method];
+    if (DIRECT.includes(this.wanted.method)) return { button: 'Flatten', text: `${name} has no iterations: one linear system.` };
+    return start.inverted > 0
+      ? { button: 'Unfold', text: `${whole(start.inverted)} triangles lie upside down in this map. ${name} will turn them.` }
+      : { button: 'Flatten', text: `Nothing is upside down in this map. ${name} will make it less distorted.` };
+  }
+
+  finish() {
+    this.#facts();
+    this.bench.crossings(this.session.certificate?.boundaryCrossings ?? []);
+  }
+
+  #facts() {
+    if (!this.session?.problem) return;
+    const { startKind, setupSeconds, notes } = this.session.problem;
+    const pairs = [
+      ['surface', this.source.name ?? $('sample').selectedOptions[0]?.text ?? this.source.sample],
+      ['start', startKind],
+      ['setup', `${number(1000 * setupSeconds, 3)} ms`],
+      ['threads', String(this.page.foldfree.threads)],
+      ...notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
+    ];
+    const last = this.session.newest;
+    if (this.session.finished) pairs.push(['ended', `${ending(last)} after ${last.iteration}`]);
+    const proof = this.session.certificate;
+    if (proof) {
+      pairs.push(['certificate', proof.locallyInjective ? 'no triangle inverted (exact)' : `${proof.inverted.length} inverted (exact)`]);
+      if (proof.locallyInjective) pairs.push(['', proof.globallyInjective ? 'nothing overlaps (exact)' : `${proof.boundaryCrossingCount || ''} boundary crossings (exact)`]);
+    }
+    this.bench.facts(pairs);
+  }
+
+  /** Brings the controls in line with what is wanted. */
+  reflect() {
+    const { wanted, source } = this;
+    for (const id of ['start', 'method', 'energy']) $(id).value = wanted[id];
+    const sample = $('sample');
+    sample.querySelector('option[data-file]')?.remove();
+    if (source.bytes) {
+      const option = new Option(source.name, '', true, true);
+      option.dataset.file = '';
+      sample.add(option, 0);
+    } else {
+      if (![...sample.options].some((option) => option.value === source.sample)) sample.add(new Option(source.sample, source.sample));
+      sample.value = source.sample;
+      const sizes = $('triangles');
+      if (![...sizes.options].some((option) => Number(option.value) === source.triangles)) {
+        sizes.add(new Option(`${whole(source.triangles)} triangles`, String(source.triangles)));
+      }
+      sizes.value = String(source.triangles);
+    }
+    $('triangles').disabled = Boolean(source.bytes);
+    const direct = DIRECT.includes(wanted.method);
+    $('start').disabled = direct;
+    $('energy').disabled = direct || wanted.method === 'arap';
+  }
+
+  /** Solves `next` instead of what is on the bench; on failure the bench stays as it is. */
+  async open(next = this.source, { busy = '' } = {}) {
+    this.pause();
+    const { wanted, session, page } = this;
+    const asked = { ...wanted };
+    if (busy) page.busy(busy);
+    try {
+      const { method, energy, start } = wanted;
+      const opened = await session.open({ source: next, settings: { method, energy, start } });
+      if (!opened) return false;
+      this.source = next;
+      if (opened.surface) this.bench.surface(opened.surface);
+      this.bench.begin(method, session.problem.startKind, energy);
+      this.bench.push(opened.start);
+      this.records = session.records;
+      this.show(0);
+      this.#facts();
+      if (this.active) clearNotice();
+      this.remember();
+      this.invite();
+      this.#good = { ...asked };
+      return true;
+    } catch (error) {
+      const name = next.name ?? next.sample;
+      notice(next === this.source ? `${METHODS[wanted.method]} could not start` : `${name} was not opened`, describe(error));
+      Object.assign(wanted, this.#good);
+      if (this.records.length) this.show(this.shown, { quietly: true });
+      return false;
+    } finally {
+      page.busy('');
+      this.reflect();
+    }
+  }
+
+  /** Writes what is on the bench into the address. */
+  remember(extra = {}) {
+    if (!this.active) return;
+    const { wanted, source } = this;
+    if (source.bytes) writeAddress('flatten', {});
+    else writeAddress('flatten', { ...wanted, steps: undefined, sample: source.sample, triangles: source.triangles, ...extra });
+  }
+
+  async reset() {
+    if (!this.whenReady(() => this.reset())) return;
+    await this.open();
+  }
+
+  async change(key, value) {
+    this.wanted[key] = value;
+    this.reflect();
+    if (!this.whenReady(() => this.open())) return;
+    await this.open();
+  }
+
+  async #changeSample() {
+    const next = { sample: $('sample').value, triangles: Number($('triangles').value) };
+    if (!next.sample) return;
+    [this.wanted.sample, this.wanted.triangles] = [next.sample, next.triangles];
+    if (!this.whenReady(() => this.open(next))) return;
+    await this.open(next, { busy: next.triangles > 10_000 ? 'Building the surface' : '' });
+  }
+
+  async openFiles(files) {
+    if (!this.whenReady(() => this.openFiles(files))) return;
+    const [file] = files;
+    this.page.busy(`Reading ${file.name}`);
+    let next;
+    try {
+      next = await readMeshFile(file);
+    } catch (error) {
+      this.page.busy('');
+      return notice(`${file.name} was not opened`, describe(error));
+    }
+    if (this.wanted.start === 'random' || this.wanted.start === 'collapsed') this.wanted.start = 'automatic';
+    await this.open(next, { busy: `Reading ${file.name}` });
+  }
+
+  /** What can be exported: the ids of the menu's buttons and what they do. */
+  get exports() {
+    const name = (this.source.name ?? this.source.sample).replace(/\.(obj|off|ply|stl|mesh|msh|vtk)(\.gz)?$/i, '');
+    const { method } = this.wanted;
+    return {
+      'export-obj': async () => save(await this.session.exportObj(), `${name}-${method}.obj`, 'model/obj'),
+      'export-trace': async () => save(`${JSON.stringify(await this.session.trace(), null, 1)}\n`, `${name}-${method}.json`, 'application/json'),
+    };
+  }
+
+  connect() {
+    for (const id of ['start', 'method', 'energy']) $(id).addEventListener('change', () => this.change(id, $(id).value));
+    for (const id of ['sample', 'triangles']) $(id).addEventListener('change', () => this.#changeSample());
+  }
+
+  /** Picks the solver a number key stands for. */
+  pickMethod(index) {
+    const method = [...$('method').options][index]?.value;
+    if (method) this.change('method', method);
+  }
+}
+
+/** The library knows its samples best. */
+function listSamples(shapes) {
+  const options = [...$('sample').options];
+  for (const { name, title, description } of shapes) {
+    const option = options.find((o) => o.value === name) ?? new Option(title, name);
+    option.title = description;
+    if (!option.parentNode) $('sample').add(option);
+  }
+}

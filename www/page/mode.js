@@ -1,0 +1,220 @@
+// What the modes share: a list of iterates, the one that is shown, and playing on.
+import { describe, notice } from './notice.js';
+import { drawStatus, speak } from './status.js';
+import { ending, spoken } from './words.js';
+
+const $ = (id) => document.getElementById(id);
+
+/** Resolves with the next frame; while the page is hidden, after a moment. */
+export const nextFrame = () => new Promise((done) => {
+  if (document.hidden) setTimeout(done, 100);
+  else requestAnimationFrame(done);
+});
+
+/** A mode of the page. Subclasses have a `session` that steps, and a `bench` of the canvas that draws. */
+export class Mode {
+  /** Numbers of the iterates the canvas has, a prepared start included. */
+  records = [];
+  shown = 0;
+  playing = false;
+  /** The solver's end, once there is one. */
+  session;
+  /** Play without a pause between two steps, whatever the pace says. */
+  hurried = false;
+  #lastStep = Promise.resolve();
+  #task = 0; // what a person asked for last; anything older stops
+  #soon;
+  #follows = true; // whether what is shown is the newest, and stays so
+  #pending; // an act a person asked for before the solver had come
+
+  /** `page`: `{ canvas, foldfree, active, busy(text, part) }`. */
+  constructor(page, name) {
+    this.page = page;
+    this.name = name;
+  }
+
+  get active() {
+    return this.page.active === this;
+  }
+
+  get bench() {
+    return this.page.canvas?.on(this.name);
+  }
+
+  /** Whether a person asked for something that waits for the solver. */
+  get waiting() {
+    return this.#pending !== undefined;
+  }
+
+  // ——— what subclasses say ———
+
+  /** The one obvious button: `{ button, text }`, or nothing. */
+  invitation() {}
+  /** Hands a step to the canvas. */
+  push(step) { this.bench.push(step); }
+  /** Before a step is made: moves what moves by itself. */
+  async beforeStep() {}
+  /** The solver has nothing more to do. */
+  finish() {}
+  /** Whether there is more to do than the solver knows of. */
+  get restless() { return false; }
+
+  // ——— what is shown ———
+
+  show(index, { quietly = false, soon = false } = {}) {
+    if (!this.records.length) return;
+    if (!soon) this.#follows = index >= this.records.length - 1;
+    this.shown = Math.max(0, Math.min(index, this.records.length - 1));
+    this.bench?.show(this.shown);
+    if (!this.active) return;
+    drawStatus(this);
+    if (!quietly) speak(spoken(this.records[this.shown]), { now: !this.playing });
+  }
+
+  /** Shows the newest iterate with the next frame, however many come until then. */
+  showSoon() {
+    this.shown = this.records.length - 1;
+    if (document.hidden || this.session.finished) {
+      cancelAnimationFrame(this.#soon);
+      this.#soon = undefined;
+      this.show(this.shown, { soon: true });
+    } else this.#soon ??= requestAnimationFrame(() => { this.#soon = undefined; this.show(this.shown, { soon: true }); });
+  }
+
+  invite() {
+    if (!this.active) return;
+    const asked = this.records.length === 1 ? this.invitation() : undefined;
+    $('invite').hidden = !asked;
+    if (!asked) return;
+    $('unfold').textContent = asked.button;
+    $('invite-text').textContent = asked.text;
+  }
+
+  // ——— playing ———
+
+  setPlaying(on) {
+    this.playing = on;
+    const button = $('play');
+    button.classList.toggle('playing', on);
+    button.setAttribute('aria-label', on ? 'Pause' : 'Play');
+    if (on) $('invite').hidden = true;
+  }
+
+  pause() {
+    this.#task += 1;
+    this.hurried = false;
+    this.session?.stop?.();
+    if (!this.playing) return;
+    this.setPlaying(false);
+    if (this.records[this.shown] && this.active) {
+      drawStatus(this);
+      speak(spoken(this.records[this.shown]), { now: true });
+    }
+  }
+
+  /** Whether the solver is there; if not, `act` is done when it is. */
+  whenReady(act) {
+    if (this.session?.ready) return true;
+    this.#pending = act;
+    $('invite').hidden = true;
+    if (this.page.canvas && !this.session) this.page.busy('Loading the solver');
+    return false;
+  }
+
+  /** Does what waited for the solver. */
+  async catchUp() {
+    const act = this.#pending;
+    this.#pending = undefined;
+    await act?.();
+  }
+
+  /** Makes one step after those asked for before it and shows it; false when there is none to make. */
+  stepOnce() {
+    this.#lastStep = this.#lastStep.then(() => this.#makeStep());
+    return this.#lastStep;
+  }
+
+  async #makeStep() {
+    try {
+      await this.beforeStep();
+      const step = await this.session.step();
+      if (!step) return false;
+      this.took(step);
+      return !this.session.finished || this.restless;
+    } catch (error) {
+      notice('The solver stopped', describe(error));
+      return false;
+    }
+  }
+
+  /** A step has come: the canvas gets it, and shows it unless a person has scrubbed away. */
+  took(step) {
+    this.push(step);
+    if (this.session.finished && !this.restless) this.ended(step);
+    if (this.#follows) this.showSoon();
+    else if (this.active) drawStatus(this);
+  }
+
+  ended(step) {
+    this.finish(step);
+    if (step.status !== 'converged') notice('The solver ended', `${ending(step)} after ${step.iteration} iterations.`, { plain: true });
+  }
+
+  async play() {
+    if (!this.whenReady(() => this.play())) return;
+    if (this.playing) return this.pause();
+    if (this.session.finished && !this.restless) {
+      // Nothing left to solve: play the film again.
+      if (this.shown >= this.records.length - 1) this.show(0);
+      return this.#film();
+    }
+    await this.keepGoing();
+  }
+
+  /** Steps at the pace until there is nothing more to do, or a person says stop. */
+  async keepGoing() {
+    this.setPlaying(true);
+    const mine = ++this.#task;
+    const mayGo = () => this.playing && mine === this.#task;
+    this.show(this.records.length - 1, { quietly: true });
+    let due = performance.now();
+    while (mayGo()) {
+      const pace = this.hurried ? 0 : Number($('pace').value);
+      const more = pace === 0 && this.session.run ? await this.runFreely(mayGo) : await this.stepOnce();
+      if (!more && mayGo()) this.pause();
+      if (pace > 0) { // else as fast as it can: the worker steps, the page draws the newest every frame
+        await nextFrame();
+        due = Math.max(due + 1000 / pace, performance.now() - 100);
+        while (mayGo() && performance.now() < due) await nextFrame();
+      }
+    }
+  }
+
+  async #film() {
+    this.setPlaying(true);
+    while (this.playing && this.shown < this.records.length - 1) {
+      const wait = 1000 / (Number($('pace').value) || 60);
+      this.show(this.shown + 1);
+      const until = performance.now() + wait;
+      do await nextFrame(); while (this.playing && performance.now() < until);
+    }
+    this.pause();
+  }
+
+  async steps(count) {
+    if (!this.whenReady(() => this.steps(count))) return;
+    this.pause();
+    $('invite').hidden = true;
+    if (this.shown < this.records.length - 1) return this.show(this.shown + count);
+    const mine = this.#task;
+    for (let i = 0; i < count && mine === this.#task; i += 1) {
+      if (!(await this.stepOnce())) break;
+    }
+  }
+
+  /** Moves along the history. */
+  scrub(index) {
+    this.pause();
+    this.show(index);
+  }
+}

@@ -1,0 +1,234 @@
+//! One mode's bench, in JavaScript's hands.
+
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use eframe::egui;
+use glam::Vec3;
+use wasm_bindgen::prelude::*;
+
+use super::bench::Bench;
+use super::solid::{Body, Cut};
+use super::stage::{Mode, Stage};
+use crate::history::Record;
+use crate::solid::field::Field;
+
+/// The bench of a mode. All arrays are copied.
+#[wasm_bindgen]
+pub struct BenchHandle {
+    stage: Rc<RefCell<Stage>>,
+    context: egui::Context,
+    mode: Mode,
+}
+
+impl BenchHandle {
+    pub(super) fn new(stage: Rc<RefCell<Stage>>, context: egui::Context, mode: Mode) -> Self {
+        Self {
+            stage,
+            context,
+            mode,
+        }
+    }
+
+    fn change<R>(&self, f: impl FnOnce(&mut Bench) -> R) -> R {
+        let mut stage = self.stage.borrow_mut();
+        if stage.mode() == self.mode {
+            self.context.request_repaint();
+        }
+        f(stage.bench(self.mode))
+    }
+
+    fn body<R: Default>(&self, f: impl FnOnce(&mut Body) -> R) -> R {
+        self.change(|bench| bench.body.as_mut().map(f).unwrap_or_default())
+    }
+}
+
+#[wasm_bindgen]
+impl BenchHandle {
+    /// Puts a surface on the bench: positions (n×3) in its own unit, triangles (m×3).
+    #[wasm_bindgen(js_name = setProblem)]
+    pub fn set_problem(&self, positions: &[f64], indices: &[u32]) {
+        let n = positions.len() / 3;
+        if indices.iter().all(|i| (*i as usize) < n) {
+            self.change(|bench| bench.set_problem(positions, indices));
+        }
+    }
+
+    /// Puts a solid on the bench: rest positions (n×3), tetrahedra (m×4), triangles of the skin (k×3).
+    #[wasm_bindgen(js_name = setSolid)]
+    pub fn set_solid(&self, positions: &[f64], tetrahedra: &[u32], skin: &[u32]) {
+        let n = positions.len() / 3;
+        if tetrahedra.iter().chain(skin).all(|i| (*i as usize) < n) {
+            self.change(|bench| bench.set_solid(positions, tetrahedra, skin));
+        }
+    }
+
+    /// Begins a run of a method from a start, with an energy (kebab-case names as in the options).
+    #[wasm_bindgen(js_name = beginRun)]
+    pub fn begin_run(&self, method: &str, start: &str, energy: &str) {
+        self.change(|bench| bench.begin_run(method, start, energy));
+    }
+
+    /// Adds an iterate: nine numbers (iteration, energy, inverted, gradient norm, smallest σ,
+    /// largest σ, L-BFGS iterations, reweighted, seconds), three numbers a phase (kind, count,
+    /// milliseconds), and the map (n×2).
+    #[wasm_bindgen(js_name = pushFrame)]
+    pub fn push_frame(&self, numbers: &[f64], phases: &[f64], map: Vec<f32>) {
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            self.change(|bench| bench.push(record, map));
+        }
+    }
+
+    /// Adds an iterate of a solid: numbers as for `pushFrame`, positions (n×3), and the stress of every
+    /// tetrahedron (m), or nothing.
+    #[wasm_bindgen(js_name = pushSolid)]
+    pub fn push_solid(&self, numbers: &[f64], phases: &[f64], positions: &[f32], stress: &[f32]) {
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            self.change(|bench| bench.push(record, [positions, stress].concat()));
+        }
+    }
+
+    /// Adds an iterate that is not drawn: numbers as for `pushFrame`.
+    #[wasm_bindgen(js_name = pushNumbers)]
+    pub fn push_numbers(&self, numbers: &[f64], phases: &[f64]) {
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            self.change(|bench| bench.push_numbers(record));
+        }
+    }
+
+    /// Shows an iterate.
+    #[wasm_bindgen(js_name = showFrame)]
+    pub fn show_frame(&self, index: usize) {
+        self.change(|bench| bench.show(index));
+    }
+
+    /// What the inspector says about the problem: names and values in turn.
+    #[wasm_bindgen(js_name = setFacts)]
+    pub fn set_facts(&self, facts: Vec<String>) {
+        let facts = facts.as_chunks::<2>().0.to_vec();
+        self.change(|bench| bench.facts = facts);
+    }
+
+    /// Pairs of boundary edges that meet where they should not in the newest map: four vertices each.
+    #[wasm_bindgen(js_name = setCrossings)]
+    pub fn set_crossings(&self, vertices: &[u32]) {
+        self.change(|bench| {
+            let n = bench.problem.vertices;
+            let pairs = vertices.as_chunks::<4>().0.iter();
+            bench.crossings = pairs
+                .filter(|pair| pair.iter().all(|v| (*v as usize) < n))
+                .map(|&[a, b, c, d]| [[a, b], [c, d]])
+                .collect();
+        });
+    }
+
+    /// The handles of the solid: their vertices one after the other, and how many each has.
+    #[wasm_bindgen(js_name = setHandles)]
+    pub fn set_handles(&self, vertices: &[u32], sizes: &[u32]) {
+        self.body(|body| {
+            let n = body.solid.vertices;
+            let mut rest = vertices;
+            body.handles.clear();
+            for &size in sizes {
+                let (handle, after) = rest.split_at((size as usize).min(rest.len()));
+                rest = after;
+                body.handles.push(
+                    handle
+                        .iter()
+                        .copied()
+                        .filter(|v| (*v as usize) < n)
+                        .collect(),
+                );
+            }
+        });
+    }
+
+    /// Which handle keys act on; a negative number for none.
+    #[wasm_bindgen(js_name = setSelected)]
+    pub fn set_selected(&self, handle: i32) {
+        self.body(|body| body.selected = usize::try_from(handle).ok());
+    }
+
+    /// Where vertices are to go: vertices (k) and their targets (k×3).
+    #[wasm_bindgen(js_name = setTargets)]
+    pub fn set_targets(&self, vertices: &[u32], positions: &[f64]) {
+        self.body(|body| {
+            let n = body.solid.vertices;
+            let pairs = vertices.iter().zip(positions.as_chunks::<3>().0);
+            body.targets.clear();
+            body.targets.extend(
+                pairs
+                    .filter(|(v, _)| (**v as usize) < n)
+                    .map(|(v, p)| (*v, Vec3::from_array(p.map(|x| x as f32)))),
+            );
+        });
+    }
+
+    /// What the colours of a solid mean: `stretch`, `volume`, `stress`.
+    #[wasm_bindgen(js_name = setField)]
+    pub fn set_field(&self, name: &str) {
+        if let Some(field) = Field::from_name(name) {
+            self.body(|body| body.field = field);
+            self.change(Bench::redraw);
+        }
+    }
+
+    /// Cuts the solid open across an axis (0, 1, 2; any other: not at all), 0–1 along its bounding box.
+    #[wasm_bindgen(js_name = setCut)]
+    pub fn set_cut(&self, axis: i32, at: f32) {
+        let axis = usize::try_from(axis).ok().filter(|axis| *axis < 3);
+        self.body(|body| {
+            body.cut = axis.map(|axis| Cut {
+                axis,
+                at: at.clamp(0.0, 1.0),
+            });
+        });
+    }
+
+    /// Whether a drag spans a box of vertices to hold, without the shift key.
+    #[wasm_bindgen(js_name = setBoxTool)]
+    pub fn set_box_tool(&self, on: bool) {
+        self.body(|body| body.box_tool = on);
+    }
+
+    /// Whether the skin takes the colours of the field.
+    #[wasm_bindgen(js_name = setTinted)]
+    pub fn set_tinted(&self, on: bool) {
+        self.change(|bench| bench.tinted = on);
+    }
+
+    /// Tetrahedra the plane of the cut meets, as drawn last.
+    #[wasm_bindgen(getter, js_name = cutTetrahedra)]
+    pub fn cut_tetrahedra(&self) -> usize {
+        self.body(|body| body.met.len())
+    }
+
+    /// Where a vertex appears in the view of the skin, in points from the canvas's upper left corner;
+    /// empty before it was drawn.
+    #[wasm_bindgen(js_name = placeOf)]
+    pub fn place_of(&self, vertex: usize) -> Vec<f32> {
+        self.change(|bench| {
+            let place = || {
+                let positions = bench.map()?.as_chunks::<3>().0;
+                let (rect, lens) = bench.body.as_ref()?.view?;
+                let (at, _) = lens.project(Vec3::from_array(*positions.get(vertex)?));
+                Some(vec![rect.left() + at.x, rect.top() + at.y])
+            };
+            place().unwrap_or_default()
+        })
+    }
+
+    /// How far a handle moves in the model by a step to the right and one up in the view, at its
+    /// depth: two vectors of `step` times the solid's radius.
+    #[wasm_bindgen(js_name = cameraAxes)]
+    pub fn camera_axes(&self, step: f32) -> Vec<f32> {
+        self.change(|bench| {
+            let back = bench.orbit.rotation.inverse();
+            let reach = step * bench.orbit.radius;
+            [back * Vec3::X * reach, back * Vec3::Y * reach]
+                .iter()
+                .flat_map(|v| v.to_array())
+                .collect()
+        })
+    }
+}
