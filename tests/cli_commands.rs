@@ -58,8 +58,16 @@ fn generate_writes_every_solid() {
         }
     }
     folder
-        .foldfree("generate hand --out hand.obj")
-        .fails(&["hand.obj", ".node"]);
+        .foldfree("generate hand --out hand.glb")
+        .fails(&["hand.glb", ".node", ".mesh"]);
+    // a format of surfaces gets the boundary
+    folder
+        .foldfree("generate hand --tetrahedra 600 --out hand.obj")
+        .ends(0);
+    let boundary = foldfree::mesh::generate_solid(foldfree::mesh::SolidShape::Hand, 600).boundary();
+    let written =
+        foldfree::mesh::io::read(&folder.read("hand.obj"), foldfree::mesh::io::Format::Obj);
+    assert_eq!(written.unwrap().mesh, boundary.unwrap().mesh);
     folder
         .foldfree("generate box --out no/such.node")
         .fails(&["no/such.node"]);
