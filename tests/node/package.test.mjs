@@ -21,10 +21,12 @@ describe('the packed package', () => {
     assert.deepEqual(files.filter((file) => /\.(rs|ts|mjs|stamp|toml)$/.test(file) && !file.endsWith('.d.ts')), []);
   });
 
+  // Flattening alone took 570 KB (230 KB); solids with six materials, their generators and the readers of seven
+  // formats are the rest.
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 600_000, `${wasm.length} bytes`);
-    assert.ok(gzipSync(wasm, { level: 9 }).length <= 250_000);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 950_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 375_000);
   });
 
   it('pleases publint', async () => {
@@ -51,9 +53,16 @@ describe('the packed package', () => {
       await foldfree.parameterize(mesh, { iterations: 5 });
       // @ts-expect-error there is no such method
       await foldfree.parameterize(mesh, { method: 'magic' });
+      const solid = await foldfree.solid(new Uint8Array(), 'node', new Uint8Array());
+      const body = await foldfree.deform(solid, { energy: 'arap', pins: [1, 2], targets: { vertices: new Uint32Array(), positions: new Float64Array() }, frames: 'f32' });
+      await body.setTargets({ vertices: Uint32Array.of(1), positions: new Float64Array(3) });
+      for await (const step of body) { const field: Float32Array = step.field; void field; }
+      const tight: boolean = (await body.result()).certificate.locallyInjective;
+      // @ts-expect-error there is no such material
+      await foldfree.deform(solid, { energy: 'rubber' });
       const core = initSync(new Uint8Array());
       const first: Step = core.parameterize(core.generate('torus', 100)).start;
-      export { sure, map, first, type FoldfreeError };
+      export { sure, tight, map, first, type FoldfreeError };
     `);
     const options = ['--noEmit', '--strict', '--target', 'ES2022', '--module', 'NodeNext', '--lib', 'ES2022,ESNext.Disposable,DOM', '--types', '', '--exactOptionalPropertyTypes'];
     try {
