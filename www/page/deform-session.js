@@ -62,7 +62,7 @@ export class DeformSession {
   async build({ source, solid = this.#solid, settings, pins, start, targets, fresh }) {
     const generation = ++this.#generation;
     this.stop();
-    await this.#still();
+    while (this.#running) await this.#running.catch(() => {});
     const solver = await this.#foldfree.deform(solid, {
       ...settings, pins, start, targets, maxIterations: MOST_ITERATIONS, field: 'stress', frames: 'f32',
     });
@@ -91,7 +91,7 @@ export class DeformSession {
 
   /** One step; resolves with it, or with undefined when there is none to make. */
   async step() {
-    await this.#still();
+    while (this.#running) await this.#running.catch(() => {});
     const solver = this.#solver;
     if (!solver || this.finished) return undefined;
     const step = await solver.step();
@@ -107,7 +107,8 @@ export class DeformSession {
    * as it takes it, and the numbers of those between.
    */
   async run(onFrame) {
-    await this.#still();
+    // Looked at and claimed without a pause between: of two calls only one goes on.
+    while (this.#running) await this.#running.catch(() => {});
     const solver = this.#solver;
     if (!solver || this.finished) return;
     const take = async (frame, reports) => {
@@ -121,11 +122,6 @@ export class DeformSession {
     };
     this.#running = solver.run({ onFrame: take }).finally(() => { this.#running = undefined; });
     await this.#running;
-  }
-
-  /** Waits until no run is under way. */
-  async #still() {
-    while (this.#running) await this.#running.catch(() => {});
   }
 
   /** Nothing is held: there is nothing to solve until a solver is built with pins. */

@@ -189,6 +189,7 @@ export class Deform extends Mode {
   async runFreely(mayGo) {
     try {
       await this.beforeStep();
+      if (!mayGo()) return false;
       await this.session.run(async (step, skipped) => {
         skipped.forEach((record) => this.bench.pushNumbers(record));
         this.#tick(skipped.length);

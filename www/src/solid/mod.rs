@@ -180,7 +180,7 @@ pub(crate) mod tests {
         let count = |jag: f64| {
             let point = |v: u32| {
                 let (i, row) = (f64::from(v / 3), v % 3);
-                let jag = if v / 3 % 2 == 0 { jag } else { -jag };
+                let jag = if (v / 3).is_multiple_of(2) { jag } else { -jag };
                 match row {
                     0 => DVec3::new(i, -2.0, 0.0),
                     1 => DVec3::new(i, jag, jag),
