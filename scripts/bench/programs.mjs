@@ -28,7 +28,8 @@ export function reportsOf(args, bench) {
 
 /**
  * Runs `body` in a page that may fetch the files of the work folder from /work/, once with one thread and once
- * with `threads`. `body` imports /pkg/index.js and returns, beside what it measured, the threads it `used`.
+ * with `threads`. `body` imports /pkg/index.js and returns, beside what it measured, the threads it `used`; where
+ * these are not the threads wished for, `wasmThreads` is undefined.
  */
 export async function inBrowser({ browser, server, work, threads }, body, argument) {
   const page = await browser.newPage();
@@ -37,8 +38,9 @@ export async function inBrowser({ browser, server, work, threads }, body, argume
     await page.goto(`${server.url}package.json`); // anything a browser shows
     const wasm = await page.evaluate(body, { ...argument, threads: false });
     const wasmThreads = await page.evaluate(body, { ...argument, threads });
-    if (wasmThreads.used !== threads) say(`  the browser gave ${wasmThreads.used} threads instead of ${threads}`);
-    return { wasm, wasmThreads };
+    if (wasmThreads.used === threads) return { wasm, wasmThreads };
+    say(`  the browser gave ${wasmThreads.used} threads instead of ${threads}: not counted`);
+    return { wasm };
   } finally {
     await page.close();
   }
@@ -47,9 +49,11 @@ export async function inBrowser({ browser, server, work, threads }, body, argume
 /** Milliseconds an iteration, and where it ended. Seconds of the rows are those of solving, setup apart. */
 export function figuresOf({ rows, setupSeconds }) {
   const last = rows.at(-1);
+  const each = rows.slice(1).map((row, i) => (row.seconds - rows[i].seconds) * 1000).sort((a, b) => a - b);
   return {
     setup: setupSeconds * 1000,
     mean: (last.seconds / last.iteration) * 1000,
+    median: each[each.length >> 1],
     iterations: last.iteration,
     energy: last.energy,
     inverted: last.inverted,

@@ -47,7 +47,7 @@ async function measure(problem, bench) {
     nativeThreads: figures(nativeThreads),
     node: figures(node),
     wasm: figures(wasm),
-    wasmThreads: figures(wasmThreads),
+    wasmThreads: wasmThreads && figures(wasmThreads),
   };
 }
 
@@ -66,16 +66,16 @@ export function solidTables({ results, drag }, { threads, iterations }) {
     table([
       ['solid', 'native', `native ${threads}t`, 'wasm Node', 'wasm Chromium', `wasm ${threads}t`, 'Node : native', 'Chromium : native', `${threads}t : 1t native`, `${threads}t : 1t wasm`, 'authors’ C++ *', 'authors : native'],
       ...results.map((r) => [
-        r.name, digits(r.native.mean), digits(r.nativeThreads.mean), digits(r.node.mean), digits(r.wasm.mean), digits(r.wasmThreads.mean),
+        r.name, digits(r.native.mean), digits(r.nativeThreads.mean), digits(r.node.mean), digits(r.wasm.mean), digits(r.wasmThreads?.mean),
         ratio(r.node.mean, r.native.mean), ratio(r.wasm.mean, r.native.mean),
-        ratio(r.native.mean, r.nativeThreads.mean), ratio(r.wasm.mean, r.wasmThreads.mean),
+        ratio(r.native.mean, r.nativeThreads.mean), ratio(r.wasm.mean, r.wasmThreads?.mean),
         digits(r.authors), ratio(r.authors, r.native.mean),
       ]),
     ]),
     ...(cited ? ['* georgbrown/wrapd, one thread, measured on another machine and day (see the notes on WRAPD): for the order of magnitude only'] : []),
     `after ${iterations} iterations; position error: ‖x − x*‖/‖x₀ − x*‖ against the solution; setup in milliseconds`,
     table([
-      ['solid', 'energy', 'energy Chromium', 'position error', 'Node', 'inverted', 'setup native', 'setup Chromium', 'wasm memory'],
+      ['solid', 'energy', 'energy Chromium', 'position error', 'position error Node', 'inverted', 'setup native', 'setup Chromium', 'wasm memory'],
       ...results.map((r) => [
         r.name, r.native.energy.toPrecision(9), r.wasm.energy.toPrecision(9), r.native.positionError.toExponential(2),
         r.node.positionError.toExponential(2), String(r.native.inverted), digits(r.native.setup), digits(r.wasm.setup),
@@ -85,7 +85,7 @@ export function solidTables({ results, drag }, { threads, iterations }) {
     `drag: steps a second in Chromium while one end of a bar of ${drag.tetrahedra} tetrahedra is dragged, with its frames`,
     table([
       ['threads', 'steps a second', '95th percentile of a step', 'inverted'],
-      ...[drag.wasm, drag.wasmThreads].map((r) => [String(r.used), digits(r.rate), `${digits(r.slow)} ms`, String(r.inverted)]),
+      ...[drag.wasm, drag.wasmThreads].filter(Boolean).map((r) => [String(r.used), digits(r.rate), `${digits(r.slow)} ms`, String(r.inverted)]),
     ]),
   ];
 }

@@ -75,7 +75,7 @@ export async function measureSurfaces(bench, { folder, sizes, quick }) {
       nativeThreads: figures(nativeThreads),
       node: figures(node),
       wasm: { ...figures(wasm), memory: wasm.memory },
-      wasmThreads: { ...figures(wasmThreads), memory: wasmThreads.memory },
+      wasmThreads: wasmThreads && { ...figures(wasmThreads), memory: wasmThreads.memory },
       slim: await measureSlim(path, { work: bench.work, iterations: quick ? 3 : 10 }),
       watlas: quick ? undefined : await measureWatlas(path),
     });
@@ -90,9 +90,9 @@ export function surfaceTables(results, { threads, iterations }) {
     table([
       ['mesh', 'native', `native ${threads}t`, 'wasm Node', 'wasm Chromium', `wasm ${threads}t`, 'Node : native', 'Chromium : native', `${threads}t : 1t native`, `${threads}t : 1t wasm`, 'SLIM (libigl)', 'native : SLIM'],
       ...results.map((r) => [
-        r.name, digits(r.native.mean), digits(r.nativeThreads.mean), digits(r.node.mean), digits(r.wasm.mean), digits(r.wasmThreads.mean),
+        r.name, digits(r.native.mean), digits(r.nativeThreads.mean), digits(r.node.mean), digits(r.wasm.mean), digits(r.wasmThreads?.mean),
         ratio(r.node.mean, r.native.mean), ratio(r.wasm.mean, r.native.mean),
-        ratio(r.native.mean, r.nativeThreads.mean), ratio(r.wasm.mean, r.wasmThreads.mean),
+        ratio(r.native.mean, r.nativeThreads.mean), ratio(r.wasm.mean, r.wasmThreads?.mean),
         digits(r.slim?.mean), ratio(r.native.mean, r.slim?.mean),
       ]),
     ]),
@@ -100,7 +100,7 @@ export function surfaceTables(results, { threads, iterations }) {
     table([
       ['mesh', 'native', 'wasm Chromium', `wasm ${threads}t`, 'of it setup', 'wasm memory', 'energy', 'inverted', 'watlas'],
       ...results.map((r) => [
-        r.name, digits(r.native.to1), digits(r.wasm.to1), digits(r.wasmThreads.to1), digits(r.wasmThreads.setup),
+        r.name, digits(r.native.to1), digits(r.wasm.to1), digits(r.wasmThreads?.to1), digits(r.wasmThreads?.setup),
         digits(r.wasm.memory / 1e6, ' MB'), r.native.energy.toFixed(9), String(r.native.inverted), digits(r.watlas?.total),
       ]),
     ]),

@@ -68,6 +68,6 @@ function examineSolid(map, { rest: restPath, global }) {
   return {
     notes: rest.notes, certificate, certificateSeconds,
     fine: elements > 0 && [inverted, degenerate, flatAtRest, irregularFaces].every((list) => list.length === 0),
-    injective: locallyInjective ? 'injective around every point' : 'not injective around every point',
+    injective: locallyInjective ? 'injective around every point' : 'not proven to be injective around every point',
   };
 }
