@@ -205,11 +205,10 @@ fn calls<V: Simd>() -> (impl Iterator<Item = usize>, usize) {
 }
 
 /// F and the forces of the coupling, from positions.
-#[derive(Clone, Copy)]
-struct Moved<A, F, C> {
-    f: F,
-    aux: A,
-    force: C,
+struct Moved<S: Space, C: Coupling<S>, V: Simd> {
+    f: S::Gradient<Pack<V>>,
+    aux: C::Aux<Pack<V>>,
+    force: Corners<V>,
 }
 
 impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
@@ -339,12 +338,7 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
 
     /// F at the positions, which is stored, and the forces of the coupling there.
     #[inline(always)]
-    fn moved<V: Simd>(
-        simd: V,
-        block: &mut Block,
-        positions: &[f64],
-        at: usize,
-    ) -> Moved<C::Aux<Pack<V>>, S::Gradient<Pack<V>>, Corners<V>> {
+    fn moved<V: Simd>(simd: V, block: &mut Block, positions: &[f64], at: usize) -> Moved<S, C, V> {
         let f = deformation_gradient::<S, V>(simd, block, positions, at);
         let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
         let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
@@ -368,7 +362,7 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
     #[inline(always)]
     fn forces<V: Simd>(self, simd: V) -> BlockSums {
         for at in packs::<V>() {
-            let moved = Self::moved(simd, self.block, self.positions, at);
+            let moved = Self::moved::<V>(simd, self.block, self.positions, at);
             store_corners::<S, V, 1>([moved.force], self.forces, at);
         }
         BlockSums::default()
