@@ -27,14 +27,14 @@ export function reportsOf(args, bench) {
 }
 
 /**
- * Runs `body` in a page that may fetch the files of the work folder from /work/, once with one thread and once
+ * Runs `body` in a page that may fetch the files of the work folder from /measured/, once with one thread and once
  * with `threads`. `body` imports /pkg/index.js and returns, beside what it measured, the threads it `used`; where
  * these are not the threads wished for, `wasmThreads` is undefined.
  */
 export async function inBrowser({ browser, server, work, threads }, body, argument) {
   const page = await browser.newPage();
   try {
-    await page.route('**/work/*', (route) => route.fulfill({ path: join(work, new URL(route.request().url()).pathname.split('/').pop()) }));
+    await page.route('**/measured/*', (route) => route.fulfill({ path: join(work, new URL(route.request().url()).pathname.split('/').pop()) }));
     await page.goto(`${server.url}package.json`); // anything a browser shows
     const wasm = await page.evaluate(body, { ...argument, threads: false });
     const wasmThreads = await page.evaluate(body, { ...argument, threads });

@@ -9,7 +9,7 @@ import { digits, ratio, table } from './table.mjs';
 async function deform({ files, threads, iterations }) {
   const { load } = await import('/pkg/index.js');
   const foldfree = await load({ threads });
-  const fetched = async (name, Type) => new Type(await (await fetch(`/work/${files[name]}`)).arrayBuffer());
+  const fetched = async (name, Type) => new Type(await (await fetch(`/measured/${files[name]}`)).arrayBuffer());
   const positions = await fetched('positions', Float64Array);
   const tetrahedra = await fetched('tetrahedra', Uint32Array);
   const start = await fetched('start', Float64Array);

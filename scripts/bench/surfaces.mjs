@@ -40,7 +40,7 @@ function figures(run) {
 async function flatten({ file, threads, iterations }) {
   const { load } = await import('/pkg/index.js');
   const foldfree = await load({ threads });
-  const bytes = new Uint8Array(await (await fetch(`/work/${file}`)).arrayBuffer());
+  const bytes = new Uint8Array(await (await fetch(`/measured/${file}`)).arrayBuffer());
   let measured;
   for (const count of [5, iterations]) {
     const dropped = performance.now();
