@@ -259,3 +259,67 @@ fn bad_targets_change_nothing() {
     let refused = Deformation::new(&mesh, &mesh.positions, &[0], &negative);
     assert!(refused.is_err());
 }
+
+#[test]
+fn the_most_iterations_are_counted_from_the_last_change_of_handles() {
+    let mesh = bar(3, 1);
+    let pins = slab(&mesh.positions, 0.0);
+    for method in [DeformationMethod::Wrapd, DeformationMethod::Lbfgs] {
+        let options = DeformationOptions {
+            method,
+            tolerance: 0.0,
+            max_iterations: 5,
+            ..options()
+        };
+        let mut body = Deformation::new(&mesh, &mesh.positions, &pins, &options).unwrap();
+        for round in 1..=3 {
+            let up = 0.1 * round as f64 * DVec3::Y;
+            body.set_targets(&targets(
+                &mesh.positions,
+                &slab(&mesh.positions, 3.0),
+                |p| p + up,
+            ))
+            .unwrap();
+            assert_eq!(body.solver().status(), Status::Running);
+            while body.solver().status() == Status::Running {
+                body.step().unwrap();
+            }
+            assert_eq!(body.solver().report().iteration, 5 * round, "{method:?}");
+        }
+    }
+}
+
+#[test]
+fn a_barrier_that_handles_break_is_never_called_converged() {
+    let mesh = bar(4, 1);
+    let (left, right) = (slab(&mesh.positions, 0.0), slab(&mesh.positions, 4.0));
+    let pins: Vec<u32> = left.iter().chain(&right).copied().collect();
+    let options = DeformationOptions {
+        material: Material::SymmetricDirichlet,
+        method: DeformationMethod::Lbfgs,
+        max_iterations: 100,
+        ..options()
+    };
+    let mut body = Deformation::new(&mesh, &mesh.positions, &pins, &options).unwrap();
+    let through = targets(&mesh.positions, &right, |p| p - 6.0 * DVec3::X);
+    body.set_targets(&through).unwrap();
+    let report = body.solver().report();
+    assert!(report.inverted > 0);
+    assert_eq!(
+        (report.energy, report.gradient_norm),
+        (f64::INFINITY, f64::INFINITY)
+    );
+    while body.solver().status() == Status::Running {
+        body.step().unwrap();
+    }
+    let report = body.solver().report();
+    assert!(
+        report.inverted == 0 || !matches!(report.status, Status::Converged(_)),
+        "{report:?}"
+    );
+    // back again, it goes on
+    body.set_targets(&targets(&mesh.positions, &right, |p| p))
+        .unwrap();
+    run(&mut body);
+    assert_eq!(body.solver().report().inverted, 0);
+}

@@ -109,6 +109,15 @@ impl Body<'_> {
         new: impl Fn(Problem) -> Result<Box<dyn Deformer>, BuildError>,
     ) -> Result<Deformation, Error> {
         let spring_stiffness = self.spring_stiffness(rest_stiffness);
+        let fits = |k: f64| k > 0.0 && k.is_finite();
+        let used = self.shape.vertices.iter();
+        if !used.copied().all(|v| fits(spring_stiffness[v as usize])) {
+            return Err(BuildError::InvalidOption {
+                option: "targetStiffness",
+                what: "times the stiffness of the body is beyond the range of numbers".into(),
+            }
+            .into());
+        }
         let mut positions = self.start.to_vec();
         let (moved, springs) = self.supports.split(self.targets, &spring_stiffness)?;
         for (vertex, point) in moved {

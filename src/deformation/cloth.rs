@@ -85,9 +85,6 @@ impl ClothOptions {
             return wrong("targetStiffness", "must be finite and positive");
         }
         if self.method == DeformationMethod::Lbfgs && self.limits.is_some() {
-            return wrong("method", "l-bfgs cannot keep limits of the stretch");
-        }
-        if self.method == DeformationMethod::Lbfgs && self.limits.is_some() {
             return wrong(
                 "method",
                 "l-bfgs knows no hard limits: it needs limits to be none",

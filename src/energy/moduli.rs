@@ -27,7 +27,7 @@ pub(super) fn lame(young: f64, poisson: f64) -> Result<[f64; 2], BuildError> {
 const RANGE: f64 = 0.081;
 
 /// The weight of an element at rest: the slope of the secant of the stress ∂ψ/∂σ₁ at (σ₁, 1, 1) between
-/// σ₁ = 1 − a and 1 + a with a = 0.081, which for the neo-Hookean energy gives the authors' 2.0066 μ +
+/// σ₁ = 1 − a and 1 + a with a = 0.081, which for the neo-Hookean energy gives 2.0066 μ +
 /// 1.0122 λ. At a → 0 it is 2μ + λ, what a wave along one axis feels. The largest eigenvalue of the
 /// Hessian at rest, 2μ + 3λ, is that of a change of volume only.
 pub(super) fn uniaxial_stiffness(stress: impl Fn(f64) -> f64) -> f64 {

@@ -92,12 +92,12 @@ impl Energy<Solid> for NeoHookean {
 
     fn constants(&self) -> Constants {
         Constants {
-            // the weight of the authors' code
+            // the secant of the uniaxial stress between 0.919 and 1.081, see `moduli`
             rest_stiffness: 2.0066 * self.mu + 1.0122 * self.lambda,
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            // as in the authors' code: the minimum may be 0
+            // an energy unit: the minimum may be 0 (|ΔE|/(|E| + 1) of the paper's experiments)
             floor: 1.0,
         }
     }

@@ -51,6 +51,10 @@ export class Client {
   #channel: BroadcastChannel | undefined;
   readonly #pending = new Map<number, Pending>();
   readonly #runs = new Map<number, FrameListener<Frame>>();
+  /** What the listeners of runs are doing with the newest frame; what they threw is in it. */
+  readonly #listening = new Map<number, Promise<unknown>>();
+  /** Runs that were cancelled, perhaps before the worker has heard of them. */
+  readonly #cancelled = new Set<number>();
   #onStarting: (() => void) | undefined;
 
   constructor(options: LoadOptions) {
@@ -84,9 +88,15 @@ export class Client {
     this.#mustBe(generation);
     if (listener) this.#runs.set(args.run, listener);
     try {
-      return await this.#send('run', args, []);
+      const sent = this.#send('run', args, []);
+      if (this.#cancelled.has(args.run)) this.#port?.post({ cancel: args.run });
+      const last = await sent;
+      await this.#listening.get(args.run);
+      return last;
     } finally {
       this.#runs.delete(args.run);
+      this.#listening.delete(args.run);
+      this.#cancelled.delete(args.run);
     }
   }
 
@@ -98,6 +108,7 @@ export class Client {
 
   /** Ends a run after its current step. */
   cancel(run: number): void {
+    this.#cancelled.add(run);
     this.#port?.post({ cancel: run });
   }
 
@@ -222,7 +233,15 @@ export class Client {
     } else if ('run' in message) {
       const { run, frame, reports } = message;
       const acknowledge = () => this.#port?.post({ acknowledge: run });
-      void Promise.resolve(this.#runs.get(run)?.(frame, reports)).finally(acknowledge);
+      const listener = this.#runs.get(run);
+      // a listener that fails ends its run, which then rejects with what was thrown
+      const before = this.#listening.get(run);
+      const heard = (async () => {
+        await before;
+        await listener?.(frame, reports);
+      })();
+      heard.catch(() => this.#port?.post({ cancel: run })).finally(acknowledge);
+      this.#listening.set(run, heard);
     } else if ('error' in message) {
       const error = fromPlain(message.error);
       this.#settle(message.id)?.reject(error);

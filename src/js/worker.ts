@@ -197,8 +197,8 @@ function serve(port: Port): void {
           }
           if (report.status !== 'running') break;
           await breathe();
-          if (run.cancelled) break;
           if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
+          if (run.cancelled) break;
         }
         const last: Frame = solver.frame();
         if (reports.length) {

@@ -31,7 +31,7 @@ pub enum Field {
 /// A solver whose handles can be moved between steps.
 pub trait Deformer: Solver {
     /// Moves pinned vertices (`positions`: vertex and point) and replaces all springs. The iterate and
-    /// what was learned of it are kept, the status goes back to running. The matrix is factored again
+    /// what was learned of it are kept, the status goes back to running, and the most iterations are counted from here. The matrix is factored again
     /// only when springs come, go or change their stiffness.
     ///
     /// # Errors

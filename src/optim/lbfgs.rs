@@ -153,7 +153,7 @@ impl Lbfgs {
         self.along_direction.iter_mut().for_each(|a| *a *= t);
     }
 
-    /// Remembers the last direction as a step that was taken in full, and the gradients of the same
+    /// Remembers the last direction (shortened, if [`Self::shorten`] was called) as the step taken, and the gradients of the same
     /// objective before and after it. A pair without positive curvature (s·y ≤ 0 up to rounding) is
     /// not kept.
     pub fn push(&mut self, step: &[f64], gradient_before: &[f64], gradient_after: &[f64]) {

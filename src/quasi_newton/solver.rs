@@ -37,6 +37,8 @@ pub struct QuasiNewton {
     system: System,
     history: Lbfgs,
     report: StepReport,
+    /// The iteration of the last change of handles, from which the most iterations are counted.
+    counted_from: usize,
 }
 
 impl QuasiNewton {
@@ -93,6 +95,7 @@ impl QuasiNewton {
             system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            counted_from: 0,
         };
         let start = this.evaluation.at(&this.x, &mut this.gradient);
         if start.energy == f64::INFINITY && this.evaluation.shape.barrier {
@@ -113,7 +116,10 @@ impl QuasiNewton {
         self.report.smallest_sigma = value.smallest;
         self.report.largest_sigma = value.largest;
         let scale = self.evaluation.shape.constants.scale;
-        self.report.gradient_norm = scale * dot(&self.gradient, &self.gradient).sqrt();
+        self.report.gradient_norm = match value.energy < f64::INFINITY {
+            true => scale * dot(&self.gradient, &self.gradient).sqrt(),
+            false => f64::INFINITY,
+        };
     }
 
     /// The direction −H g into `direction`, and its slope: without a history where that is not downhill.
@@ -149,7 +155,7 @@ impl QuasiNewton {
                 &mut self.trial[..unknowns],
             );
             let value = self.evaluation.at(&self.trial, &mut self.trial_gradient);
-            if value.energy <= self.report.energy + t * demanded {
+            if value.energy < f64::INFINITY && value.energy <= self.report.energy + t * demanded {
                 return (Some((t, value)), trials);
             }
             t *= 0.5;
@@ -203,7 +209,7 @@ impl QuasiNewton {
                     (before, self.evaluation.shape.constants.floor),
                     true,
                     self.options.tolerance,
-                    self.options.max_iterations,
+                    self.counted_from + self.options.max_iterations,
                 );
             }
             // also at a minimum to rounding, where no step is seen to lower the energy
@@ -278,9 +284,8 @@ impl Deformer for QuasiNewton {
             self.history.clear();
             let value = self.evaluation.at(&self.x, &mut self.gradient);
             self.take(value);
-            if self.report.iteration < self.options.max_iterations {
-                self.report.status = Status::Running;
-            }
+            self.counted_from = self.report.iteration;
+            self.report.status = Status::Running;
             Ok(())
         })
     }

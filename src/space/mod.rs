@@ -42,6 +42,9 @@ impl<T: Copy, const N: usize> Components<T> for [T; N] {
     fn from_fn(mut f: impl FnMut(usize) -> T) -> Self {
         // not core::array::from_fn: it is not always inlined, and code that is not inlined into a
         // `pulp` dispatch is compiled without its instruction set
+        if N == 0 {
+            return core::array::from_fn(f);
+        }
         let mut out = [f(0); N];
         let mut i = 1;
         while i < N {
@@ -85,6 +88,23 @@ pub trait Space: Copy + Send + Sync + 'static {
     type Eigenframe<T: Copy>: Copy;
     /// Left and right singular vectors.
     type Singularframe<T: Copy>: Copy;
+
+    /// Where an iterative decomposition may begin: what is kept of that of a nearby F.
+    type Guess<T: Copy>: Components<T>;
+    /// What one begins with where nothing is known.
+    fn no_guess() -> Self::Guess<f64>;
+    /// What to keep of a decomposition.
+    fn guess<L: Lane>(polar: Self::Polar<L>) -> Self::Guess<L>;
+    /// [`Self::polar`] from a guess.
+    fn polar_near<L: Lane>(
+        f: Self::Gradient<L>,
+        guess: Self::Guess<L>,
+    ) -> (Self::Symmetric<L>, Self::Polar<L>);
+    /// [`Self::eigen`] of a matrix near S, or with eigenvectors near those of S.
+    fn eigen_near<L: Lane>(
+        s: Self::Symmetric<L>,
+        polar: Self::Polar<L>,
+    ) -> (Self::Sigma<L>, Self::Eigenframe<L>);
 
     /// sym(F) = S of F = R S, and R.
     fn polar<L: Lane>(f: Self::Gradient<L>) -> (Self::Symmetric<L>, Self::Polar<L>);

@@ -135,6 +135,30 @@ impl Space for Sheet {
     type Eigenframe<T: Copy> = [T; 2];
     type Singularframe<T: Copy> = (Frame<T>, PlaneSvd<T>);
 
+    type Guess<T: Copy> = [T; 0];
+
+    fn no_guess() -> [f64; 0] {
+        []
+    }
+    #[inline(always)]
+    fn guess<L: Lane>(_: Self::Polar<L>) -> [L; 0] {
+        []
+    }
+    #[inline(always)]
+    fn polar_near<L: Lane>(
+        f: Self::Gradient<L>,
+        _: [L; 0],
+    ) -> (Self::Symmetric<L>, Self::Polar<L>) {
+        Self::polar(f)
+    }
+    #[inline(always)]
+    fn eigen_near<L: Lane>(
+        s: Self::Symmetric<L>,
+        _: Self::Polar<L>,
+    ) -> (Self::Sigma<L>, Self::Eigenframe<L>) {
+        Self::eigen(s)
+    }
+
     #[inline(always)]
     fn polar<L: Lane>(f: [L; 6]) -> ([L; 3], SheetPolar<L>) {
         let (frame, inner) = reduce(f);

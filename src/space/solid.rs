@@ -4,7 +4,9 @@
 //! R = U Vᵀ, S = V Σ Vᵀ; the last singular value carries the sign of det F. A symmetric matrix is
 //! stored as (xx, yy, zz, xy, xz, yz).
 
-use super::three::{Columns, Three, bilinear, eigen, sum_of_products, svd};
+use super::three::{
+    Columns, Three, bilinear, eigen, eigen_near, identity, sum_of_products, svd, svd_near,
+};
 use super::{Lane, Space};
 
 /// Tetrahedra (k = 3) in space (d = 3).
@@ -47,6 +49,26 @@ impl Space for Solid {
     type Polar<T: Copy> = SolidSvd<T>;
     type Eigenframe<T: Copy> = Columns<T>;
     type Singularframe<T: Copy> = (Columns<T>, Columns<T>);
+
+    type Guess<T: Copy> = [T; 9];
+
+    fn no_guess() -> [f64; 9] {
+        flat(identity(0.0))
+    }
+    /// V.
+    #[inline(always)]
+    fn guess<L: Lane>(polar: SolidSvd<L>) -> [L; 9] {
+        flat(polar.v)
+    }
+    #[inline(always)]
+    fn polar_near<L: Lane>(f: [L; 9], guess: [L; 9]) -> ([L; 6], SolidSvd<L>) {
+        let (sigma, u, v) = svd_near(columns(f), columns(guess));
+        (symmetric(sigma, v), SolidSvd { sigma, u, v })
+    }
+    #[inline(always)]
+    fn eigen_near<L: Lane>(s: [L; 6], polar: SolidSvd<L>) -> ([L; 3], Columns<L>) {
+        eigen_near(s, polar.v)
+    }
 
     #[inline(always)]
     fn polar<L: Lane>(f: [L; 9]) -> ([L; 6], SolidSvd<L>) {

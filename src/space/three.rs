@@ -94,12 +94,43 @@ fn perpendicular<L: Lane>(n: Three<L>) -> Three<L> {
     [one + sign * n[0] * n[0] * a, sign * b, -(sign * n[0])]
 }
 
+/// V with its columns orthonormal again, if they nearly are: one step of V ← V (3I − VᵀV)/2.
+#[inline(always)]
+fn orthonormalised<L: Lane>(v: Columns<L>) -> Columns<L> {
+    let half = v[0][0].lift(0.5);
+    let whole = v[0][0].lift(1.5);
+    let [x, y, z] = [dot(v[0], v[1]), dot(v[0], v[2]), dot(v[1], v[2])].map(
+        #[inline(always)]
+        |g| -(half * g),
+    );
+    let own = [dot(v[0], v[0]), dot(v[1], v[1]), dot(v[2], v[2])];
+    let own = own.map(
+        #[inline(always)]
+        |g| whole - half * g,
+    );
+    let mut out = v;
+    for i in 0..3 {
+        let (a, b, c) = (v[0][i], v[1][i], v[2][i]);
+        out[0][i] = a * own[0] + b * x + c * y;
+        out[1][i] = a * x + b * own[1] + c * z;
+        out[2][i] = a * y + b * z + c * own[2];
+    }
+    out
+}
+
 /// F = U diag(σ) Vᵀ with proper rotations U and V, |σ| descending, only the last negative (for an
 /// inverted F): one-sided Jacobi (Hestenes 1958).
+#[inline(always)]
+pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
+    svd_near(f, identity(f[0][0]))
+}
+
+/// The same from a proper rotation V that is orthonormal to rounding: the nearer it is to that of F, the
+/// less is to be done.
 // in WebAssembly the instruction set is the module's: one copy serves all kernels
 #[cfg_attr(target_arch = "wasm32", inline(never))]
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
+pub fn svd_near<L: Lane>(f: Columns<L>, v: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
     let zero = f[0][0].lift(0.0);
     let one = f[0][0].lift(1.0);
     // products of entries must neither vanish nor overflow
@@ -110,12 +141,18 @@ pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
     let vanishes = size.lt(zero.lift(1e-300));
     let size = one.select(vanishes, one, size);
     let inverse = one / size;
-    let mut a = [
+    let f = [
         scaled(f[0], inverse),
         scaled(f[1], inverse),
         scaled(f[2], inverse),
     ];
-    let mut v = identity(zero);
+    let mut v = orthonormalised(v);
+    let mut a = f;
+    for j in 0..3 {
+        for i in 0..3 {
+            a[j][i] = f[0][i] * v[j][0] + f[1][i] * v[j][1] + f[2][i] * v[j][2];
+        }
+    }
     let negligible = zero.lift(1e-30);
     for _ in 0..MOST_SWEEPS {
         let mut turned = false;
@@ -167,15 +204,29 @@ pub fn svd<L: Lane>(f: Columns<L>) -> (Three<L>, Columns<L>, Columns<L>) {
 
 /// Eigenvalues, descending, and a proper rotation of eigenvectors of the symmetric matrix
 /// (xx, yy, zz, xy, xz, yz): Jacobi (1846).
+#[inline(always)]
+pub fn eigen<L: Lane>(s: [L; 6]) -> (Three<L>, Columns<L>) {
+    eigen_near(s, identity(s[0]))
+}
+
+/// The same from a proper rotation whose columns are near the eigenvectors.
 // in WebAssembly the instruction set is the module's: one copy serves all kernels
 #[cfg_attr(target_arch = "wasm32", inline(never))]
 #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
-pub fn eigen<L: Lane>(s: [L; 6]) -> (Three<L>, Columns<L>) {
+pub fn eigen_near<L: Lane>(s: [L; 6], v: Columns<L>) -> (Three<L>, Columns<L>) {
     let zero = s[0].lift(0.0);
-    let mut d = [s[0], s[1], s[2]];
+    let mut v = v;
+    let mut d = [
+        bilinear(s, v[0], v[0]),
+        bilinear(s, v[1], v[1]),
+        bilinear(s, v[2], v[2]),
+    ];
     // off-diagonal entry of each of PAIRS
-    let mut o = [s[3], s[4], s[5]];
-    let mut v = identity(zero);
+    let mut o = [
+        bilinear(s, v[0], v[1]),
+        bilinear(s, v[0], v[2]),
+        bilinear(s, v[1], v[2]),
+    ];
     let negligible = zero.lift(1e-16);
     for _ in 0..MOST_SWEEPS {
         let mut turned = false;

@@ -113,12 +113,7 @@ pub fn default_deformation_options() -> Fallible<JsValue> {
 
 #[wasm_bindgen(typescript_custom_section)]
 const MATERIAL_TYPE: &str = "
-/** An elastic energy; `materials()` lists them. */
-export type Material = 'neo-hookean' | 'arap' | 'symmetric-dirichlet';
+/** An elastic energy. */
+export type Material =
+  'neo-hookean' | 'stable-neo-hookean' | 'st-venant-kirchhoff' | 'arap' | 'symmetric-dirichlet' | 'dirichlet';
 ";
-
-/// The names of the materials.
-#[wasm_bindgen(unchecked_return_type = "Material[]")]
-pub fn materials() -> Vec<String> {
-    Material::NAMES.map(String::from).into()
-}

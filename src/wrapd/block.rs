@@ -38,6 +38,8 @@ pub struct Block {
     pub candidate: Rows,
     /// F at the current positions.
     pub gradient: Rows,
+    /// Where the decomposition of the next F begins.
+    pub guess: Rows,
     /// Z.
     pub z: Rows,
     /// U, scaled dual.

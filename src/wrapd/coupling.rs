@@ -13,10 +13,17 @@ pub trait Coupling<S: Space>: Copy + Send + Sync + 'static {
     /// Is the global step a single linear solve?
     const LINEAR: bool;
 
+    /// Where the decomposition of the next F begins.
+    type Guess<T: Copy>: Components<T>;
+    /// The first of them.
+    fn no_guess() -> Self::Guess<f64>;
+    /// What to keep.
+    fn guess<L: Lane>(aux: Self::Aux<L>) -> Self::Guess<L>;
+
     /// The local coordinates of a deformation gradient.
-    fn local<L: Lane>(f: S::Gradient<L>) -> (Self::Local<L>, Self::Aux<L>);
-    /// Singular values (or eigenvalues) and vectors of a local variable.
-    fn spectrum<L: Lane>(z: Self::Local<L>) -> (S::Sigma<L>, Self::Frame<L>);
+    fn local<L: Lane>(f: S::Gradient<L>, guess: Self::Guess<L>) -> (Self::Local<L>, Self::Aux<L>);
+    /// Singular values (or eigenvalues) and vectors of a local variable near that of `aux`.
+    fn spectrum<L: Lane>(z: Self::Local<L>, aux: Self::Aux<L>) -> (S::Sigma<L>, Self::Frame<L>);
     /// The local variable with these values.
     fn compose<L: Lane>(values: S::Sigma<L>, frame: Self::Frame<L>) -> Self::Local<L>;
     /// ‖Z‖²_F.
@@ -38,13 +45,25 @@ impl<S: Space> Coupling<S> for RotationAware {
     type Frame<L: Copy> = S::Eigenframe<L>;
     const LINEAR: bool = false;
 
-    #[inline(always)]
-    fn local<L: Lane>(f: S::Gradient<L>) -> (S::Symmetric<L>, S::Polar<L>) {
-        S::polar(f)
+    type Guess<T: Copy> = S::Guess<T>;
+
+    fn no_guess() -> S::Guess<f64> {
+        S::no_guess()
     }
     #[inline(always)]
-    fn spectrum<L: Lane>(z: S::Symmetric<L>) -> (S::Sigma<L>, S::Eigenframe<L>) {
-        S::eigen(z)
+    fn guess<L: Lane>(polar: S::Polar<L>) -> S::Guess<L> {
+        S::guess(polar)
+    }
+    #[inline(always)]
+    fn local<L: Lane>(f: S::Gradient<L>, guess: S::Guess<L>) -> (S::Symmetric<L>, S::Polar<L>) {
+        S::polar_near(f, guess)
+    }
+    #[inline(always)]
+    fn spectrum<L: Lane>(
+        z: S::Symmetric<L>,
+        polar: S::Polar<L>,
+    ) -> (S::Sigma<L>, S::Eigenframe<L>) {
+        S::eigen_near(z, polar)
     }
     #[inline(always)]
     fn compose<L: Lane>(values: S::Sigma<L>, frame: S::Eigenframe<L>) -> S::Symmetric<L> {
@@ -78,12 +97,21 @@ impl<S: Space> Coupling<S> for Linear {
     type Frame<L: Copy> = S::Singularframe<L>;
     const LINEAR: bool = true;
 
+    type Guess<T: Copy> = [T; 0];
+
+    fn no_guess() -> [f64; 0] {
+        []
+    }
     #[inline(always)]
-    fn local<L: Lane>(f: S::Gradient<L>) -> (S::Gradient<L>, ()) {
+    fn guess<L: Lane>(_: ()) -> [L; 0] {
+        []
+    }
+    #[inline(always)]
+    fn local<L: Lane>(f: S::Gradient<L>, _: [L; 0]) -> (S::Gradient<L>, ()) {
         (f, ())
     }
     #[inline(always)]
-    fn spectrum<L: Lane>(z: S::Gradient<L>) -> (S::Sigma<L>, S::Singularframe<L>) {
+    fn spectrum<L: Lane>(z: S::Gradient<L>, _: ()) -> (S::Sigma<L>, S::Singularframe<L>) {
         S::svd(z)
     }
     #[inline(always)]

@@ -21,6 +21,8 @@ pub struct Shape {
     pub gradient: usize,
     /// Components of Z.
     pub local: usize,
+    /// The first guess of a decomposition, of which so many components count.
+    pub guess: ([f64; 9], usize),
     /// κ of (17).
     pub kappa: f64,
     /// Is the global step a single linear solve?
@@ -36,7 +38,11 @@ pub struct Shape {
 impl Shape {
     /// Of these types.
     pub fn of<S: Space, C: Coupling<S>, E: Energy<S>>(energy: &E) -> Self {
+        let first = C::no_guess();
+        let mut guess = [0.0; 9];
+        guess[..first.as_slice().len()].copy_from_slice(first.as_slice());
         Self {
+            guess: (guess, first.as_slice().len()),
             dimension: S::DIM,
             stretches: S::STRETCHES,
             gradient: S::Gradient::<f64>::LEN,

@@ -53,11 +53,15 @@ impl External {
                 return wrong("external.stiffness", what);
             }
         }
+        let mut pinned = vec![false; n];
+        for &pin in pins.iter().filter(|&&pin| (pin as usize) < n) {
+            pinned[pin as usize] = true;
+        }
         for spring in &self.springs {
             let v = spring.vertex;
             let finite = spring.target[..dimension].iter().all(|x| x.is_finite());
             let stiff = spring.stiffness > 0.0 && spring.stiffness.is_finite();
-            if outside(&v) || pins.contains(&v) || !finite || !stiff {
+            if outside(&v) || pinned[v as usize] || !finite || !stiff {
                 let what = format!("vertex {v}: free, a finite target and k > 0 are needed");
                 return wrong("external.springs", what);
             }

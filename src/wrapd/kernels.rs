@@ -241,7 +241,7 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
                 |pack| {
                     let at = begin + pack * width;
                     let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
-                    let (s, aux) = C::local(f);
+                    let (s, aux) = C::local(f, load(simd, &block.guess, at));
                     let (target, misfit) = if reset {
                         (s, zero)
                     } else {
@@ -259,7 +259,7 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
                         );
                         (target, C::norm_squared(away))
                     };
-                    let (p, frame) = C::spectrum(target);
+                    let (p, frame) = C::spectrum(target, aux);
                     store_few(p, &mut values, pack * width);
                     (target, frame, aux, misfit)
                 },
@@ -344,7 +344,8 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
         let [k]: [Pack<V>; 1] = load(simd, &block.stiffness, at);
         let z: C::Local<Pack<V>> = load(simd, &block.z, at);
         let u: C::Local<Pack<V>> = load(simd, &block.u, at);
-        let (_, aux) = C::local(f);
+        let (_, aux) = C::local(f, load(simd, &block.guess, at));
+        store(C::guess(aux), &mut block.guess, at);
         let m = C::residual(
             f,
             aux,

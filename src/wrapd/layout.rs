@@ -44,6 +44,10 @@ pub fn build_blocks(rest: &RestShape, slot: &[u32], shape: &Shape) -> Vec<Block>
                 stiffness: constant(shape.constants.rest_stiffness),
                 candidate: constant(shape.constants.rest_stiffness),
                 gradient: zeros(shape.gradient),
+                guess: shape.guess.0[..shape.guess.1]
+                    .iter()
+                    .map(|&g| [g; BLOCK])
+                    .collect(),
                 z: zeros(shape.local),
                 u: zeros(shape.local),
                 sigma: vec![[1.0; BLOCK]; k],

@@ -7,7 +7,7 @@ use crate::optim::BuildError;
 /// What to solve: rest shapes, a start, and vertices held where they start.
 #[derive(Debug, Clone, Copy)]
 pub struct Problem<'a> {
-    /// Rest shapes; for reported energies their total measure should be 1.
+    /// Rest shapes; of a map their total measure should be 1, which its reported energy expects.
     pub rest: &'a RestShape,
     /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
     pub start: &'a [f64],

@@ -59,6 +59,8 @@ pub struct Wrapd {
     delay: usize,
     /// No flips at the previous iterate?
     was_injective: bool,
+    /// The iteration of the last change of handles, from which the most iterations are counted.
+    counted_from: usize,
 }
 
 impl Wrapd {
@@ -135,6 +137,7 @@ impl Wrapd {
             report: StepReport::at_start(),
             delay: 0,
             was_injective: false,
+            counted_from: 0,
         };
         this.look();
         if let Some(r) = options.reweighting {
@@ -153,7 +156,7 @@ impl Wrapd {
         self.gather(Pass::Last);
         self.evaluate(sums);
         if self.shape.barrier && self.report.inverted > 0 {
-            // there is no Z yet whose energy could stand in
+            // no Z belongs to these positions, whose energy could stand in
             self.report.energy = f64::INFINITY;
         }
         self.was_injective = self.report.inverted == 0;
@@ -418,7 +421,7 @@ impl Wrapd {
             (before, floor),
             injective && self.was_injective && kept,
             self.options.tolerance,
-            self.options.max_iterations,
+            self.counted_from + self.options.max_iterations,
         );
         self.was_injective = injective;
         self.report.seconds += begun.seconds();

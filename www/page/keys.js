@@ -8,7 +8,7 @@ export function listenToKeys(acts) {
     const open = document.querySelector('dialog[open]');
     if (open && event.key !== '?') return;
     const choosing = target instanceof HTMLSelectElement || target instanceof HTMLTextAreaElement
-      || (target instanceof HTMLInputElement && target.type !== 'range');
+      || (target instanceof HTMLInputElement && target.id !== 'history');
     if (choosing) return;
     const name = (event.shiftKey && event.key.startsWith('Arrow') ? 'Shift+' : '')
       + (event.key.length === 1 ? event.key.toLowerCase() : event.key);

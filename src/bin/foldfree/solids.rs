@@ -7,17 +7,20 @@ use foldfree::mesh::io::{self, Format, SolidFile, read_ele, read_node, write_ele
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// The same path with another ending before an optional .gz; the one that exists, compressed or not.
-/// `None`: this is neither a .node nor an .ele file.
+/// The .node or the .ele file that a name of either stands for: itself, or the one beside it, compressed
+/// as it is if there is such a one. `None`: this is neither.
 fn beside(path: &Path, ending: &str) -> Option<PathBuf> {
-    let text = path.to_string_lossy();
-    let stem = text.strip_suffix(".gz").unwrap_or(&text);
-    let stem = stem
-        .strip_suffix(".node")
-        .or_else(|| stem.strip_suffix(".ele"))?;
-    let candidates = ["", ".gz"].map(|packed| PathBuf::from(format!("{stem}.{ending}{packed}")));
-    let existing = candidates.iter().find(|p| p.exists());
-    Some(existing.unwrap_or(&candidates[0]).clone())
+    let [node, ele] = pair(path)?;
+    let wanted = if ending == "node" { node } else { ele };
+    if wanted.exists() {
+        return Some(wanted);
+    }
+    let text = wanted.to_string_lossy();
+    let other = match text.strip_suffix(".gz") {
+        Some(plain) => PathBuf::from(plain),
+        None => PathBuf::from(format!("{text}.gz")),
+    };
+    Some(if other.exists() { other } else { wanted })
 }
 
 /// The format a name stands for, of those with one file.
@@ -79,8 +82,8 @@ pub fn check_format(path: &Path) -> Result<(), Failure> {
 /// Writes a deformed solid: its vertices (.node), vertices and elements, or, in a format of surfaces,
 /// the boundary.
 pub fn write_deformed(path: &Path, rest: &SolidMesh, to: Vec<DVec3>) -> Result<(), Failure> {
-    if beside(path, "node").is_some() {
-        return files::write(path, &write_node(&to));
+    if let Some([node, _]) = pair(path) {
+        return files::write(&node, &write_node(&to));
     }
     let solid = SolidMesh {
         positions: to,

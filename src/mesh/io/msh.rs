@@ -8,6 +8,10 @@ use super::write::{Elements, Line};
 use super::{ParseError, ParseErrorKind};
 use std::io::Write;
 
+/// Bytes of `$End` and the name of a section that is passed over: the search for the end compares so many
+/// at every byte.
+const LONGEST_NAME: usize = 64;
+
 /// Nodes of an element by its type, from 0 on; 0: not known.
 #[rustfmt::skip]
 const NODES: [u8; 32] = [
@@ -129,6 +133,9 @@ impl Reader<'_> {
                 self.values.scanner.skip_line();
                 return Ok(());
             }
+        } else if end.len() > LONGEST_NAME {
+            let what = "the name of a section has more than 60 letters".to_string();
+            return Err(self.values.error(ParseErrorKind::Syntax, what));
         } else if self.values.scanner.skip_past(&end).is_some() {
             self.values.scanner.skip_line();
             return Ok(());

@@ -32,7 +32,8 @@ fn is_text(bytes: &[u8]) -> bool {
         let count = count.iter().rev().fold(0, |n, &b| n << 8 | u64::from(b));
         count * TRIANGLE as u64 + TITLE as u64 + 4
     });
-    let start = bytes.trim_ascii_start();
+    let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let start = start.trim_ascii_start();
     let begins = start.len() >= 5 && start[..5].eq_ignore_ascii_case(b"solid");
     begins && claimed != Some(bytes.len() as u64) && !bytes[..bytes.len().min(512)].contains(&0)
 }

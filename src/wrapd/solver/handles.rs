@@ -24,9 +24,8 @@ impl Deformer for Wrapd {
             }
             self.look();
             self.publish();
-            if self.report.iteration < self.options.max_iterations {
-                self.report.status = Status::Running;
-            }
+            self.counted_from = self.report.iteration;
+            self.report.status = Status::Running;
             Ok(())
         })
     }
