@@ -5,7 +5,7 @@ import { readPins } from '../foldfree-wasm/handles.mjs';
 import { core } from '../foldfree-wasm/core.mjs';
 import { readPositions, readSolid, writeDeformed, writeSolid } from '../foldfree-wasm/solids.mjs';
 
-/** The folder's problems; `authors` are milliseconds an iteration of the authors' C++ program, one thread. */
+/** The folder's problems; `authors` are milliseconds an iteration of the authors' C++ program, one thread, as published with the problems: cited, for the order of magnitude. */
 const AUTHORS = [
   { name: 'shear', authors: 49 },
   { name: 'untwist', authors: 101 },

@@ -64,15 +64,15 @@ export function solidTables({ results, drag }, { threads, iterations }) {
   return [
     `deforming, milliseconds an iteration: mean of the first ${iterations}, setup apart; ${threads} threads where not 1`,
     table([
-      ['solid', 'native', `native ${threads}t`, 'wasm Node', 'wasm Chromium', `wasm ${threads}t`, 'Node : native', 'Chromium : native', `${threads}t : 1t native`, `${threads}t : 1t wasm`, 'authors’ C++ *', 'authors : native'],
+      ['solid', 'native', `native ${threads}t`, 'wasm Node', 'wasm Chromium', `wasm ${threads}t`, 'Node : native', 'Chromium : native', `${threads}t : 1t native`, `${threads}t : 1t wasm`, 'authors’ C++ *'],
       ...results.map((r) => [
         r.name, digits(r.native.mean), digits(r.nativeThreads.mean), digits(r.node.mean), digits(r.wasm.mean), digits(r.wasmThreads?.mean),
         ratio(r.node.mean, r.native.mean), ratio(r.wasm.mean, r.native.mean),
         ratio(r.native.mean, r.nativeThreads.mean), ratio(r.wasm.mean, r.wasmThreads?.mean),
-        digits(r.authors), ratio(r.authors, r.native.mean),
+        digits(r.authors),
       ]),
     ]),
-    ...(cited ? ['* georgbrown/wrapd, one thread, measured on another machine and day (see the notes on WRAPD): for the order of magnitude only'] : []),
+    ...(cited ? ['* cited, not measured here: georgbrown/wrapd, one thread, on another machine; not to be divided by'] : []),
     `after ${iterations} iterations; position error: ‖x − x*‖/‖x₀ − x*‖ against the solution; setup in milliseconds`,
     table([
       ['solid', 'energy', 'energy Chromium', 'position error', 'position error Node', 'inverted', 'setup native', 'setup Chromium', 'wasm memory'],
