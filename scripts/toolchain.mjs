@@ -216,7 +216,8 @@ export async function wasmEnvironment({ threads = false } = {}) {
     CARGO_ENCODED_RUSTFLAGS: undefined,
     RUSTFLAGS: undefined,
     CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS: wasmFlags(threads).join(' '),
-    CARGO_TARGET_DIR: join(root, 'target', 'wasm'),
+    // a folder each, so that the two builds can run side by side
+    CARGO_TARGET_DIR: join(root, 'target', threads ? 'wasm-threads' : 'wasm'),
     CARGO_PROFILE_RELEASE_DEBUG: '0',
     CARGO_PROFILE_RELEASE_LTO: 'fat',
   };

@@ -76,6 +76,13 @@ export function run(command, args, { label, estimate, echo = false, timeout, log
   });
 }
 
+/** Waits for all; then fails as the first that failed did. */
+export async function all(...promises) {
+  const ends = await Promise.allSettled(promises);
+  const failed = ends.find(({ status }) => status === 'rejected');
+  if (failed) throw failed.reason;
+}
+
 /** The trimmed output of a command, or undefined when it cannot be run or fails. */
 export async function ask(command, args, options = {}) {
   const { code, output } = await run(command, args, { ...options, check: false });
