@@ -3,6 +3,7 @@
 use super::panels::{Panel, Panels, Part, ROWS, WIDEST};
 use crate::parallel;
 use core::ops::Range;
+use wide::f64x4;
 
 /// L in panels.
 #[derive(Clone, Copy)]
@@ -151,14 +152,15 @@ impl<const D: usize> Forward<'_, D> {
             let fours = factor.panels.rows[panel.rows()].iter();
             let blocks = factor.values[below..].chunks_exact(width * ROWS);
             for (number, (rows, block)) in fours.zip(blocks).enumerate() {
-                let mut sum = [[0.0; D]; ROWS];
+                // by right-hand side: four rows are one register of AVX, or two of the others
+                let mut sum = [f64x4::ZERO; D];
                 for (l, x) in block.as_chunks::<ROWS>().0.iter().zip(&own[x..]) {
-                    for k in 0..ROWS {
-                        for d in 0..D {
-                            sum[k][d] += l[k] * x[d];
-                        }
+                    let l = f64x4::new(*l);
+                    for d in 0..D {
+                        sum[d] += l * f64x4::splat(x[d]);
                     }
                 }
+                let sum = sum.map(f64x4::to_array);
                 let (target, base) = match number < panel.inner as usize {
                     true => (&mut *own, first),
                     false => (&mut *later, end),
@@ -166,7 +168,7 @@ impl<const D: usize> Forward<'_, D> {
                 for k in 0..ROWS {
                     let target = &mut target[rows[k] as usize - base];
                     for d in 0..D {
-                        target[d] -= sum[k][d];
+                        target[d] -= sum[d][k];
                     }
                 }
             }

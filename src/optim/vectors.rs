@@ -2,7 +2,7 @@
 //! nothing but the length.
 
 use crate::parallel;
-use crate::space::dispatch;
+use crate::space::{Pack, dispatch};
 use pulp::{Simd, WithSimd};
 
 /// Entries of a block: it stays in the first-level cache while several vectors pass over it.
@@ -75,14 +75,21 @@ struct Dot<'a> {
 impl WithSimd for Dot<'_> {
     type Output = f64;
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> f64 {
-        let mut sums = [0.0; 8];
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        // eight sums in as many registers as they take
+        let width = Pack::<S>::WIDTH;
+        let mut packs = [Pack::splat(simd, 0.0); 8];
         let (a, a_rest) = self.a.as_chunks::<8>();
         let (b, b_rest) = self.b.as_chunks::<8>();
         for (a, b) in a.iter().zip(b) {
-            for lane in 0..8 {
-                sums[lane] += a[lane] * b[lane];
+            for (k, sum) in packs.iter_mut().enumerate().take(8 / width) {
+                let at = k * width;
+                *sum = *sum + Pack::load(simd, &a[at..]) * Pack::load(simd, &b[at..]);
             }
+        }
+        let mut sums = [0.0; 8];
+        for (sums, pack) in sums.chunks_exact_mut(width).zip(packs) {
+            pack.store(sums);
         }
         for (lane, (a, b)) in a_rest.iter().zip(b_rest).enumerate() {
             sums[lane] += a * b;
@@ -102,8 +109,16 @@ struct Axpy<'a> {
 impl WithSimd for Axpy<'_> {
     type Output = ();
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (y, x) in self.y.iter_mut().zip(self.x) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        let c = Pack::splat(simd, self.c);
+        let width = Pack::<S>::WIDTH;
+        let whole = self.y.len() / width * width;
+        let (y, y_rest) = self.y.split_at_mut(whole);
+        let (x, x_rest) = self.x.split_at(whole);
+        for (y, x) in y.chunks_exact_mut(width).zip(x.chunks_exact(width)) {
+            (Pack::load(simd, y) + c * Pack::load(simd, x)).store(y);
+        }
+        for (y, x) in y_rest.iter_mut().zip(x_rest) {
             *y += self.c * x;
         }
     }
@@ -119,8 +134,16 @@ struct Scaled<'a> {
 impl WithSimd for Scaled<'_> {
     type Output = ();
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        for (y, x) in self.y.iter_mut().zip(self.x) {
+    fn with_simd<S: Simd>(self, simd: S) {
+        let c = Pack::splat(simd, self.c);
+        let width = Pack::<S>::WIDTH;
+        let whole = self.y.len() / width * width;
+        let (y, y_rest) = self.y.split_at_mut(whole);
+        let (x, x_rest) = self.x.split_at(whole);
+        for (y, x) in y.chunks_exact_mut(width).zip(x.chunks_exact(width)) {
+            (c * Pack::load(simd, x)).store(y);
+        }
+        for (y, x) in y_rest.iter_mut().zip(x_rest) {
             *y = self.c * x;
         }
     }

@@ -6,8 +6,9 @@
 //! operations contracts to a fused multiply-add, so that a kernel gives the same bits at every width
 //! (the dense kernels of faer's Cholesky do use it where the machine has it).
 
+use super::Registers as Simd;
 use core::ops::{Add, Div, Mul, Neg, Sub};
-use pulp::{Simd, WithSimd};
+use pulp::WithSimd;
 
 /// Field arithmetic, and constants by [`Scalar::lift`].
 pub trait Scalar:
@@ -130,35 +131,33 @@ impl Lane for f64 {
 #[derive(Clone, Copy)]
 pub struct Pack<S: Simd> {
     simd: S,
-    lanes: S::f64s,
+    lanes: S::Lanes,
 }
 
 impl<S: Simd> Pack<S> {
     /// Lanes in the register.
-    pub const WIDTH: usize = core::mem::size_of::<S::f64s>() / core::mem::size_of::<f64>();
+    pub const WIDTH: usize = core::mem::size_of::<S::Lanes>() / core::mem::size_of::<f64>();
 
     /// The same number in every lane.
     #[inline(always)]
     pub fn splat(simd: S, c: f64) -> Self {
         Self {
             simd,
-            lanes: simd.splat_f64s(c),
+            lanes: simd.splat(c),
         }
     }
     /// `WIDTH` numbers from the front of `source`.
     #[inline(always)]
     pub fn load(simd: S, source: &[f64]) -> Self {
-        let (head, _) = S::as_simd_f64s(source);
         Self {
             simd,
-            lanes: head[0],
+            lanes: simd.load(source),
         }
     }
     /// Writes the lanes to the front of `target`.
     #[inline(always)]
     pub fn store(self, target: &mut [f64]) {
-        let (head, _) = S::as_mut_simd_f64s(target);
-        head[0] = self.lanes;
+        self.simd.store(self.lanes, target);
     }
     /// All lanes folded into one number.
     #[inline(always)]
@@ -166,6 +165,13 @@ impl<S: Simd> Pack<S> {
         let mut lanes = [0.0; 8];
         self.store(&mut lanes[..Self::WIDTH]);
         lanes[1..Self::WIDTH].iter().fold(lanes[0], |a, &b| f(a, b))
+    }
+    #[inline(always)]
+    fn with(self, lanes: S::Lanes) -> Self {
+        Self {
+            simd: self.simd,
+            lanes,
+        }
     }
 }
 
@@ -175,27 +181,21 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                Self {
-                    simd: self.simd,
-                    lanes: self.simd.$op(self.lanes, other.lanes),
-                }
+                self.with(self.simd.$op(self.lanes, other.lanes))
             }
         }
     };
 }
-operator!(Add, add, add_f64s);
-operator!(Sub, sub, sub_f64s);
-operator!(Mul, mul, mul_f64s);
-operator!(Div, div, div_f64s);
+operator!(Add, add, plus);
+operator!(Sub, sub, minus);
+operator!(Mul, mul, times);
+operator!(Div, div, over);
 
 impl<S: Simd> Neg for Pack<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self {
-            simd: self.simd,
-            lanes: self.simd.neg_f64s(self.lanes),
-        }
+        self.with(self.simd.negated(self.lanes))
     }
 }
 
@@ -207,20 +207,14 @@ impl<S: Simd> Scalar for Pack<S> {
 }
 
 impl<S: Simd> Lane for Pack<S> {
-    type Mask = S::m64s;
+    type Mask = S::Mask;
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self {
-            simd: self.simd,
-            lanes: self.simd.sqrt_f64s(self.lanes),
-        }
+        self.with(self.simd.root(self.lanes))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Self {
-            simd: self.simd,
-            lanes: self.simd.abs_f64s(self.lanes),
-        }
+        self.with(self.simd.absolute(self.lanes))
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
@@ -232,19 +226,16 @@ impl<S: Simd> Lane for Pack<S> {
         self.select(other.lt(self), self, other)
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> S::m64s {
-        self.simd.less_than_f64s(self.lanes, other.lanes)
+    fn lt(self, other: Self) -> S::Mask {
+        self.simd.less(self.lanes, other.lanes)
     }
     #[inline(always)]
-    fn select(self, mask: S::m64s, yes: Self, no: Self) -> Self {
-        Self {
-            simd: self.simd,
-            lanes: self.simd.select_f64s(mask, yes.lanes, no.lanes),
-        }
+    fn select(self, mask: S::Mask, yes: Self, no: Self) -> Self {
+        self.with(self.simd.choose(mask, yes.lanes, no.lanes))
     }
     #[inline(always)]
-    fn any(self, mask: S::m64s) -> bool {
-        self.simd.first_true_m64s(mask) < Self::WIDTH
+    fn any(self, mask: S::Mask) -> bool {
+        self.simd.any(mask)
     }
     #[inline(always)]
     fn mantissa_exponent(self) -> (Self, Self) {

@@ -5,12 +5,14 @@
 
 mod lane;
 mod plane;
+mod registers;
 mod sheet;
 mod solid;
 mod three;
 
 pub use lane::{Lane, Pack, Scalar, dispatch};
 pub use plane::Plane;
+pub use registers::Registers;
 pub use sheet::Sheet;
 pub use solid::Solid;
 
@@ -99,6 +101,16 @@ pub trait Space: Copy + Send + Sync + 'static {
     fn polar_near<L: Lane>(
         f: Self::Gradient<L>,
         guess: Self::Guess<L>,
+    ) -> (Self::Symmetric<L>, Self::Polar<L>);
+    /// What is kept beside the guess where F will be decomposed once more.
+    type Kept<T: Copy>: Components<T>;
+    /// That of a decomposition.
+    fn keep<L: Lane>(polar: Self::Polar<L>) -> Self::Kept<L>;
+    /// [`Self::polar`] of the F whose guess and rest were kept.
+    fn polar_again<L: Lane>(
+        f: Self::Gradient<L>,
+        guess: Self::Guess<L>,
+        kept: Self::Kept<L>,
     ) -> (Self::Symmetric<L>, Self::Polar<L>);
     /// [`Self::eigen`] of a matrix near S, or with eigenvectors near those of S.
     fn eigen_near<L: Lane>(

@@ -151,6 +151,20 @@ impl Space for Sheet {
     ) -> (Self::Symmetric<L>, Self::Polar<L>) {
         Self::polar(f)
     }
+    type Kept<T: Copy> = [T; 0];
+
+    #[inline(always)]
+    fn keep<L: Lane>(_: Self::Polar<L>) -> [L; 0] {
+        []
+    }
+    #[inline(always)]
+    fn polar_again<L: Lane>(
+        f: Self::Gradient<L>,
+        _: [L; 0],
+        _: [L; 0],
+    ) -> (Self::Symmetric<L>, Self::Polar<L>) {
+        Self::polar(f)
+    }
     #[inline(always)]
     fn eigen_near<L: Lane>(
         s: Self::Symmetric<L>,

@@ -65,6 +65,22 @@ impl Space for Solid {
         let (sigma, u, v) = svd_near(columns(f), columns(guess));
         (symmetric(sigma, v), SolidSvd { sigma, u, v })
     }
+    type Kept<T: Copy> = [T; 12];
+
+    /// U and σ.
+    #[inline(always)]
+    fn keep<L: Lane>(polar: SolidSvd<L>) -> [L; 12] {
+        let ([a, b, c], s) = (polar.u, polar.sigma);
+        [
+            a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], s[0], s[1], s[2],
+        ]
+    }
+    #[inline(always)]
+    fn polar_again<L: Lane>(_: [L; 9], guess: [L; 9], kept: [L; 12]) -> ([L; 6], SolidSvd<L>) {
+        let [a, b, c, d, e, f, g, h, i, sigma @ ..] = kept;
+        let (u, v) = ([[a, b, c], [d, e, f], [g, h, i]], columns(guess));
+        (symmetric(sigma, v), SolidSvd { sigma, u, v })
+    }
     #[inline(always)]
     fn eigen_near<L: Lane>(s: [L; 6], polar: SolidSvd<L>) -> ([L; 3], Columns<L>) {
         eigen_near(s, polar.v)

@@ -40,10 +40,10 @@ fn choose<L: Lane>(mask: L::Mask, yes: Three<L>, no: Three<L>) -> Three<L> {
     ]
 }
 
-/// Cosine and sine of the rotation by at most 45° for which tan 2θ = 2 γ/δ; where the mask does not
-/// hold, of none.
+/// Cosine, sine and tangent of the rotation by at most 45° for which tan 2θ = 2 γ/δ; where the mask does
+/// not hold, of none.
 #[inline(always)]
-fn rotation<L: Lane>(gamma: L, delta: L, turns: L::Mask) -> (L, L) {
+fn rotation<L: Lane>(gamma: L, delta: L, turns: L::Mask) -> (L, L, L) {
     let (zero, one) = (gamma.lift(0.0), gamma.lift(1.0));
     let twice = gamma + gamma;
     let denominator = delta.abs() + (delta * delta + twice * twice).sqrt();
@@ -51,7 +51,7 @@ fn rotation<L: Lane>(gamma: L, delta: L, turns: L::Mask) -> (L, L) {
     let t = t.select(delta.lt(zero), -t, t);
     let t = t.select(turns, t, zero);
     let c = one / (one + t * t).sqrt();
-    (c, c * t)
+    (c, c * t, t)
 }
 
 #[inline(always)]
@@ -161,7 +161,7 @@ pub fn svd_near<L: Lane>(f: Columns<L>, v: Columns<L>) -> (Three<L>, Columns<L>,
             let turns = (negligible * alpha * beta).lt(gamma * gamma);
             if zero.any(turns) {
                 turned = true;
-                let (c, s) = rotation(gamma, beta - alpha, turns);
+                let (c, s, _) = rotation(gamma, beta - alpha, turns);
                 rotate(&mut a, p, q, c, s);
                 rotate(&mut v, p, q, c, s);
             }
@@ -237,8 +237,7 @@ pub fn eigen_near<L: Lane>(s: [L; 6], v: Columns<L>) -> (Three<L>, Columns<L>) {
                 continue;
             }
             turned = true;
-            let (c, sn) = rotation(o[k], d[q] - d[p], turns);
-            let t = sn / c;
+            let (c, sn, t) = rotation(o[k], d[q] - d[p], turns);
             let by = t * o[k];
             d[p] = d[p] - by;
             d[q] = d[q] + by;

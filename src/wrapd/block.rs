@@ -40,6 +40,8 @@ pub struct Block {
     pub gradient: Rows,
     /// Where the decomposition of the next F begins.
     pub guess: Rows,
+    /// What else is known of that of the present F, after a pass that evaluates.
+    pub kept: Rows,
     /// Z.
     pub z: Rows,
     /// U, scaled dual.

@@ -22,6 +22,16 @@ pub trait Coupling<S: Space>: Copy + Send + Sync + 'static {
 
     /// The local coordinates of a deformation gradient.
     fn local<L: Lane>(f: S::Gradient<L>, guess: Self::Guess<L>) -> (Self::Local<L>, Self::Aux<L>);
+    /// What is kept beside the guess where `local` will be asked for once more.
+    type Kept<T: Copy>: Components<T>;
+    /// That of a decomposition.
+    fn keep<L: Lane>(aux: Self::Aux<L>) -> Self::Kept<L>;
+    /// The same once more for an F whose guess and rest were kept.
+    fn local_again<L: Lane>(
+        f: S::Gradient<L>,
+        guess: Self::Guess<L>,
+        kept: Self::Kept<L>,
+    ) -> (Self::Local<L>, Self::Aux<L>);
     /// Singular values (or eigenvalues) and vectors of a local variable near that of `aux`.
     fn spectrum<L: Lane>(z: Self::Local<L>, aux: Self::Aux<L>) -> (S::Sigma<L>, Self::Frame<L>);
     /// The local variable with these values.
@@ -57,6 +67,21 @@ impl<S: Space> Coupling<S> for RotationAware {
     #[inline(always)]
     fn local<L: Lane>(f: S::Gradient<L>, guess: S::Guess<L>) -> (S::Symmetric<L>, S::Polar<L>) {
         S::polar_near(f, guess)
+    }
+
+    type Kept<T: Copy> = S::Kept<T>;
+
+    #[inline(always)]
+    fn keep<L: Lane>(polar: S::Polar<L>) -> S::Kept<L> {
+        S::keep(polar)
+    }
+    #[inline(always)]
+    fn local_again<L: Lane>(
+        f: S::Gradient<L>,
+        guess: S::Guess<L>,
+        kept: S::Kept<L>,
+    ) -> (S::Symmetric<L>, S::Polar<L>) {
+        S::polar_again(f, guess, kept)
     }
     #[inline(always)]
     fn spectrum<L: Lane>(
@@ -108,6 +133,17 @@ impl<S: Space> Coupling<S> for Linear {
     }
     #[inline(always)]
     fn local<L: Lane>(f: S::Gradient<L>, _: [L; 0]) -> (S::Gradient<L>, ()) {
+        (f, ())
+    }
+
+    type Kept<T: Copy> = [T; 0];
+
+    #[inline(always)]
+    fn keep<L: Lane>(_: ()) -> [L; 0] {
+        []
+    }
+    #[inline(always)]
+    fn local_again<L: Lane>(f: S::Gradient<L>, _: [L; 0], _: [L; 0]) -> (S::Gradient<L>, ()) {
         (f, ())
     }
     #[inline(always)]

@@ -8,8 +8,9 @@ use crate::space::{Components, Lane, Pack, Scalar, Space, dispatch};
 use core::marker::PhantomData;
 use pulp::{Simd, WithSimd};
 
-/// Packs a call is about.
-pub const PACKS: usize = 4;
+/// Packs a call is about. What is found before a call waits for its end: in WebAssembly a pack waits in
+/// registers, and several would be copied by calls to the engine.
+pub const PACKS: usize = if cfg!(target_arch = "wasm32") { 1 } else { 4 };
 
 /// Most elements a call is about: [`PACKS`] of the widest.
 pub const MOST: usize = 8 * PACKS;

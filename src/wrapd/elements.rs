@@ -23,6 +23,8 @@ pub struct Shape {
     pub local: usize,
     /// The first guess of a decomposition, of which so many components count.
     pub guess: ([f64; 9], usize),
+    /// Components of what else is kept of one.
+    pub kept: usize,
     /// κ of (17).
     pub kappa: f64,
     /// Is the global step a single linear solve?
@@ -43,6 +45,7 @@ impl Shape {
         guess[..first.as_slice().len()].copy_from_slice(first.as_slice());
         Self {
             guess: (guess, first.as_slice().len()),
+            kept: C::Kept::<f64>::LEN,
             dimension: S::DIM,
             stretches: S::STRETCHES,
             gradient: S::Gradient::<f64>::LEN,

@@ -241,7 +241,11 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
                 |pack| {
                     let at = begin + pack * width;
                     let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
-                    let (s, aux) = C::local(f, load(simd, &block.guess, at));
+                    let (s, aux) = C::local_again(
+                        f,
+                        load(simd, &block.guess, at),
+                        load(simd, &block.kept, at),
+                    );
                     let (target, misfit) = if reset {
                         (s, zero)
                     } else {
@@ -283,7 +287,8 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
                 weighs.then_some(&mut stiffness),
             );
             prox_iterations = prox_iterations.max(iterations);
-            for (pack, (target, frame, aux, misfit)) in prepared.into_iter().enumerate() {
+            for pack in 0..PACKS {
+                let (target, frame, aux, misfit) = prepared[pack];
                 let at = begin + pack * width;
                 let few = pack * width..(pack + 1) * width;
                 let f: S::Gradient<Pack<V>> = load(simd, &block.gradient, at);
@@ -392,13 +397,15 @@ impl<S: Space, C: Coupling<S>> Kernel<'_, S, C> {
                 |pack| {
                     let at = begin + pack * width;
                     let Moved { f, aux, force } = Self::moved(simd, block, positions, at);
+                    store(C::keep(aux), &mut block.kept, at);
                     let (sigma, frame) = C::svd(f, aux);
                     store_few(sigma, &mut sigmas, pack * width);
                     (frame, force)
                 },
             );
             energy.evaluate(count, &sigmas, &mut densities, Some(&mut gradients));
-            for (pack, (frame, force)) in moved.into_iter().enumerate() {
+            for pack in 0..PACKS {
+                let (frame, force) = moved[pack];
                 let at = begin + pack * width;
                 let sigma: S::Sigma<Pack<V>> = load_few(simd, &sigmas, pack * width);
                 store(sigma, &mut block.stretch, at);

@@ -48,6 +48,7 @@ pub fn build_blocks(rest: &RestShape, slot: &[u32], shape: &Shape) -> Vec<Block>
                     .iter()
                     .map(|&g| [g; BLOCK])
                     .collect(),
+                kept: zeros(shape.kept),
                 z: zeros(shape.local),
                 u: zeros(shape.local),
                 sigma: vec![[1.0; BLOCK]; k],
