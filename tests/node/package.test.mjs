@@ -22,10 +22,10 @@ describe('the packed package', () => {
   });
 
   // Flattening alone took 570 KB (230 KB); solids with six materials, their generators and the readers of seven
-  // formats are the rest.
+  // formats are the rest. Two registers side by side, not one, are 60 KB (20 KB), and a fifth of the time.
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 950_000, `${wasm.length} bytes`);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_000_000, `${wasm.length} bytes`);
     assert.ok(gzipSync(wasm, { level: 9 }).length <= 375_000);
   });
 
