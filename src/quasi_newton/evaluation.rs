@@ -2,7 +2,7 @@
 
 use crate::energy::Energy;
 use crate::geometry::{Elimination, RestShape};
-use crate::optim::Field;
+use crate::optim::{Field, Yardstick};
 use crate::parallel;
 use crate::space::Space;
 use crate::wrapd::Linear;
@@ -35,7 +35,7 @@ pub struct Evaluation {
 /// What an evaluation finds beside the gradient.
 #[derive(Debug, Clone, Copy)]
 pub struct Value {
-    /// Reported energy; infinite where a barrier is broken.
+    /// Reported energy without its offset; infinite where a barrier is broken.
     pub energy: f64,
     /// Elements with σ_last ≤ 0.
     pub inverted: usize,
@@ -72,6 +72,16 @@ impl Evaluation {
         }
     }
 
+    /// What its energies and gradients are measured against.
+    pub fn yardstick(&self) -> Yardstick {
+        let constants = &self.shape.constants;
+        let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
+        Yardstick {
+            rounding: constants.scale * rounding,
+            ..constants.yardstick(self.measure, self.shape.stretches)
+        }
+    }
+
     /// At positions by slot; the raw energy's gradient goes to `gradient` (free vertices × dimension).
     pub fn at(&mut self, x: &[f64], gradient: &mut [f64]) -> Value {
         let chunk = self.forces.len() / self.blocks.len();
@@ -104,7 +114,7 @@ impl Evaluation {
                 false => {
                     let external = self.terms.as_ref().map_or(0.0, |t| t.energy);
                     let elements: f64 = sums().map(|s| s.f_energy).sum();
-                    constants.reported(elements + external, self.measure)
+                    constants.relative(elements + external, self.measure)
                 }
             },
             inverted,

@@ -8,7 +8,7 @@ use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{
     BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Spring, Status,
-    StepReport, Stopwatch,
+    StepReport, Stopwatch, Yardstick,
 };
 use crate::parallel;
 use crate::space::Space;
@@ -37,6 +37,9 @@ pub struct QuasiNewton {
     system: System,
     history: Lbfgs,
     report: StepReport,
+    /// The reported energy without its offset.
+    energy: f64,
+    yardstick: Yardstick,
     /// The iteration of the last change of handles, from which the most iterations are counted.
     counted_from: usize,
 }
@@ -81,6 +84,7 @@ impl QuasiNewton {
         for (position, &s) in problem.start.chunks_exact(dimension).zip(&slot) {
             x[s as usize * dimension..][..dimension].copy_from_slice(position);
         }
+        let yardstick = evaluation.yardstick();
         let unknowns = || vec![0.0; free * dimension];
         let mut this = Self {
             options,
@@ -95,6 +99,8 @@ impl QuasiNewton {
             system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            energy: f64::INFINITY,
+            yardstick,
             counted_from: 0,
         };
         let start = this.evaluation.at(&this.x, &mut this.gradient);
@@ -111,7 +117,8 @@ impl QuasiNewton {
 
     /// Fills the report from an evaluation whose gradient is in `gradient`.
     fn take(&mut self, value: Value) {
-        self.report.energy = value.energy;
+        self.energy = value.energy;
+        self.report.energy = value.energy + self.evaluation.shape.constants.offset;
         self.report.inverted = value.inverted;
         self.report.smallest_sigma = value.smallest;
         self.report.largest_sigma = value.largest;
@@ -155,7 +162,7 @@ impl QuasiNewton {
                 &mut self.trial[..unknowns],
             );
             let value = self.evaluation.at(&self.trial, &mut self.trial_gradient);
-            if value.energy < f64::INFINITY && value.energy <= self.report.energy + t * demanded {
+            if value.energy < f64::INFINITY && value.energy <= self.energy + t * demanded {
                 return (Some((t, value)), trials);
             }
             t *= 0.5;
@@ -166,7 +173,7 @@ impl QuasiNewton {
     fn iterate(&mut self) -> Result<(), SolveError> {
         let begun = Stopwatch::start();
         let dimension = self.evaluation.shape.dimension;
-        let before = self.report.energy;
+        let before = self.energy;
         let iteration = self.report.iteration + 1;
         if let Some(bad) = self.gradient.iter().position(|g| !g.is_finite()) {
             let slot = (bad / dimension) as u32;
@@ -205,12 +212,14 @@ impl QuasiNewton {
                 for (position, &s) in self.positions.chunks_exact_mut(dimension).zip(&self.slot) {
                     position.copy_from_slice(&self.x[s as usize * dimension..][..dimension]);
                 }
-                self.report.settle(
-                    (before, self.evaluation.shape.constants.floor),
-                    true,
+                let met = self.yardstick.criterion(
+                    self.energy - before,
+                    self.energy,
+                    self.report.gradient_norm,
                     self.options.tolerance,
-                    self.counted_from + self.options.max_iterations,
                 );
+                let most = self.counted_from + self.options.max_iterations;
+                self.report.conclude(met, most);
             }
             // also at a minimum to rounding, where no step is seen to lower the energy
             None => {

@@ -15,7 +15,7 @@ use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
     BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Status,
-    StepReport, Stopwatch,
+    StepReport, Stopwatch, Yardstick,
 };
 use crate::parallel;
 use crate::space::Space;
@@ -55,6 +55,9 @@ pub struct Wrapd {
     system: System,
     history: Lbfgs,
     report: StepReport,
+    /// The reported energy without its offset.
+    energy: f64,
+    yardstick: Yardstick,
     /// Iterations with the rest weights, for this start.
     delay: usize,
     /// No flips at the previous iterate?
@@ -114,11 +117,16 @@ impl Wrapd {
             x[s..s + dimension].copy_from_slice(&problem.start[v * dimension..(v + 1) * dimension]);
         }
         let unknowns = free * dimension;
+        let measure: f64 = rest.measure.iter().sum();
+        let yardstick = Yardstick {
+            rounding: shape.constants.scale * terms.as_ref().map_or(0.0, |t| t.rounding),
+            ..shape.constants.yardstick(measure, shape.stretches)
+        };
         let mut this = Self {
             options,
             shape,
             elements,
-            measure: rest.measure.iter().sum(),
+            measure,
             slot,
             order,
             forces: vec![0.0; corners_per_block * blocks.len()],
@@ -135,6 +143,8 @@ impl Wrapd {
             system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            energy: f64::INFINITY,
+            yardstick,
             delay: 0,
             was_injective: false,
             counted_from: 0,
@@ -157,7 +167,7 @@ impl Wrapd {
         self.evaluate(sums);
         if self.shape.barrier && self.report.inverted > 0 {
             // no Z belongs to these positions, whose energy could stand in
-            self.report.energy = f64::INFINITY;
+            (self.energy, self.report.energy) = (f64::INFINITY, f64::INFINITY);
         }
         self.was_injective = self.report.inverted == 0;
     }
@@ -260,7 +270,8 @@ impl Wrapd {
         };
         let external = self.terms.as_ref().map_or(0.0, |t| t.energy);
         let constants = &self.shape.constants;
-        self.report.energy = constants.reported(sum + external, self.measure);
+        self.energy = constants.relative(sum + external, self.measure);
+        self.report.energy = self.energy + constants.offset;
         if barrier_broken {
             self.report.gradient_norm = f64::INFINITY;
         }
@@ -358,7 +369,7 @@ impl Wrapd {
         let begun = Stopwatch::start();
         let dimension = self.shape.dimension;
         let k = self.report.iteration;
-        let before = self.report.energy;
+        let before = self.energy;
 
         let clock = Stopwatch::start();
         let clamp = match self.options.reweighting {
@@ -414,15 +425,15 @@ impl Wrapd {
         let [least, most] = self.shape.limits;
         let kept = self.report.smallest_sigma >= least - LIMIT_SLACK
             && self.report.largest_sigma <= most + LIMIT_SLACK;
-        // a change that is no more than the rounding error of the terms says nothing
-        let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
-        let floor = self.shape.constants.floor + rounding / self.options.tolerance.max(1e-300);
-        self.report.settle(
-            (before, floor),
-            injective && self.was_injective && kept,
+        let met = self.yardstick.criterion(
+            self.energy - before,
+            self.energy,
+            self.report.gradient_norm,
             self.options.tolerance,
-            self.counted_from + self.options.max_iterations,
         );
+        let may = injective && self.was_injective && kept;
+        let most = self.counted_from + self.options.max_iterations;
+        self.report.conclude(met.filter(|_| may), most);
         self.was_injective = injective;
         self.report.seconds += begun.seconds();
         let evaluate_phase = Phase::new(PhaseKind::Evaluate, 1, clock);
