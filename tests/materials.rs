@@ -1,4 +1,5 @@
-//! Every material on a bar, by WRAPD and by L-BFGS, which share nothing but the element kernels.
+//! Every material on a bar, by WRAPD and by L-BFGS: they share the element kernels and the system matrix, and
+//! the plain evaluation, which shares neither, has the last word.
 
 mod bar;
 
