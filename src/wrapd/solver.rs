@@ -23,6 +23,13 @@ use crate::space::Space;
 /// Vertices that are gathered as one piece of work.
 const VERTICES: usize = 1024;
 
+/// Steps that the global step takes as they come (§4.1). It needs two or three; one that needs many does
+/// not descend, as happens where Z − U is far from any stretch, and from there on steps are shortened.
+const TRUSTED: usize = 20;
+
+/// Most times that a step is shortened.
+const MOST_SHORTENINGS: usize = 4;
+
 /// By how much singular values may miss hard limits at convergence.
 const LIMIT_SLACK: f64 = 1e-6;
 
@@ -312,9 +319,24 @@ impl Wrapd {
                 || !(-slope > bound)
                 || count >= self.options.max_global_iterations;
             let pass = if last { Pass::Last } else { Pass::Forces };
-            let sums = self.pass(pass);
+            let mut sums = self.pass(pass);
             self.gather(pass);
             if !self.shape.linear {
+                // maps of the plane are left as the paper has them
+                let doubtful = count > TRUSTED && self.shape.dimension > 2;
+                for _ in 0..if doubtful { MOST_SHORTENINGS } else { 0 } {
+                    let after = dot(&self.next_gradient, &self.direction);
+                    // a parabola rises over a step that ends steeper than it began
+                    if !(after > -slope) {
+                        break;
+                    }
+                    // to where the slope vanishes, if it goes on as between the two ends
+                    let t = slope / (slope - after);
+                    self.retreat(t);
+                    slope *= t;
+                    sums = self.pass(pass);
+                    self.gather(pass);
+                }
                 if !uphill {
                     self.history
                         .push(&self.direction, &self.gradient, &self.next_gradient);
@@ -325,6 +347,17 @@ impl Wrapd {
                 return (count, sums);
             }
         }
+    }
+
+    /// Makes the last step `t` times as long.
+    fn retreat(&mut self, t: f64) {
+        let unknowns = self.direction.len();
+        add_combination(
+            core::iter::once((t - 1.0, &self.direction[..])),
+            &mut self.x[..unknowns],
+        );
+        self.direction.iter_mut().for_each(|d| *d *= t);
+        self.history.shorten(t);
     }
 
     /// Copies the positions by slot to those by vertex.
