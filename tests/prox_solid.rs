@@ -121,12 +121,17 @@ fn check<E: Energy<Solid>>(
             .fold(f64::INFINITY, f64::min);
         if found > best + 1e-9 * (best.abs() + stiffness) {
             worse += 1;
-            // another minimum, not a saddle or a slope
-            let below = compass(&objective, &allowed, z);
-            assert!(
-                found <= below + 1e-9 * (below.abs() + stiffness),
-                "{context}: {below}"
-            );
+            // another minimum: no saddle, no maximum
+            let h = hessian;
+            let (curvatures, _) = Solid::eigen([
+                h[0][0] + k,
+                h[1][1] + k,
+                h[2][2] + k,
+                h[0][1],
+                h[0][2],
+                h[1][2],
+            ]);
+            assert!(curvatures[2] > 0.0, "{context}: {curvatures:?}");
             println!("{context}: {found}, and {best} by search");
         }
     }

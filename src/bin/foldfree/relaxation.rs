@@ -41,8 +41,8 @@ pub struct Relaxation {
     /// Threads; 0: as many as the machine has.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
     pub threads: usize,
-    /// Write the deformed vertices (.node), the solid (.mesh, .msh, .vtk) or the surface (.obj, .off,
-    /// .ply, .stl), also with .gz behind.
+    /// Write the deformed body: the vertices of a solid (.node), a solid (.mesh, .msh, .vtk), its surface or
+    /// a cloth (.obj, .off, .ply, .stl; a cloth also .mesh, .msh, .vtk); also with .gz behind.
     #[arg(long, value_name = "OUT")]
     pub out: Option<PathBuf>,
     /// Write what happened, iteration by iteration, as JSON.
