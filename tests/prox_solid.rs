@@ -3,7 +3,7 @@
 mod random;
 
 use foldfree::energy::{Dirichlet, Energy, NeoHookean, StVenantKirchhoff, StableNeoHookean};
-use foldfree::space::{Pack, Plane, Solid};
+use foldfree::space::{Pack, Plane, Solid, Space};
 use pulp::{Arch, Simd, WithSimd};
 use random::Random;
 

@@ -323,8 +323,11 @@ impl Wrapd {
             self.gather(pass);
             if !self.shape.linear {
                 // maps of the plane are left as the paper has them
-                let doubtful = count > TRUSTED && self.shape.dimension > 2;
-                for _ in 0..if doubtful { MOST_SHORTENINGS } else { 0 } {
+                let shortenings = match count > TRUSTED && self.shape.dimension > 2 {
+                    true => MOST_SHORTENINGS,
+                    false => 0,
+                };
+                for _ in 0..shortenings {
                     let after = dot(&self.next_gradient, &self.direction);
                     // a parabola rises over a step that ends steeper than it began
                     if !(after > -slope) {
