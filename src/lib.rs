@@ -11,6 +11,7 @@
 
 pub mod certificate;
 pub mod deformation;
+mod disjoint_sets;
 pub mod embedding;
 pub mod energy;
 mod error;

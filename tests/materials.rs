@@ -1,4 +1,5 @@
-//! Every material on a bar, by WRAPD and by L-BFGS, which share nothing but the element kernels.
+//! Every material on a bar, by WRAPD and by L-BFGS: they share the element kernels and the system matrix, and
+//! the plain evaluation, which shares neither, has the last word.
 
 mod bar;
 
@@ -105,7 +106,7 @@ fn every_material_by_two_methods() {
                 begin.1,
                 report.status.name()
             );
-            assert!(matches!(report.status, Status::Converged(_) | Status::Stalled));
+            assert!(matches!(report.status, Status::Converged(_)));
             assert!((energy - report.energy).abs() <= 1e-10 * (energy.abs() + begin.0));
             assert!((gradient - report.gradient_norm).abs() <= 1e-8 * begin.1);
             assert!(gradient <= 1e-5 * begin.1, "{gradient:e}");
@@ -134,10 +135,9 @@ fn small_strains_cost_the_same() {
                 max_iterations: 3000,
                 ..Default::default()
             };
-            solve(&mesh, (&start, &pins), &options)
-                .solver()
-                .report()
-                .energy
+            let done = solve(&mesh, (&start, &pins), &options);
+            assert!(matches!(done.solver().status(), Status::Converged(_)));
+            done.solver().report().energy
         })
         .collect();
     for energy in &energies {
@@ -146,11 +146,11 @@ fn small_strains_cost_the_same() {
 }
 
 /// What is held all around as an affine map has it is that map within, whatever the start: for L-BFGS
-/// the Laplacian is the Hessian, and one step does.
+/// the Laplacian is the Hessian, and one step does (a second may be needed to notice).
 #[test]
 fn the_dirichlet_minimum_is_harmonic() {
     let mesh = bar(6, 3);
-    let affine = |p: DVec3| DVec3::new(2.0 * p.x + p.y, 0.5 * p.y - p.z, p.z + p.x) + 3.0;
+    let affine = |p: DVec3| DVec3::new(2.0 * p.x + p.y, 0.5 * p.y - p.z, 2.0 * p.z + p.x) + 3.0;
     let on_the_border = |p: DVec3| {
         let inside = |x: f64, most: f64| x > 1e-9 && x < most - 1e-9;
         !(inside(p.x, 2.0) && inside(p.y, 1.0) && inside(p.z, 1.0))
@@ -170,18 +170,22 @@ fn the_dirichlet_minimum_is_harmonic() {
         })
         .collect();
     assert!(pins.len() < start.len());
-    for (method, iterations) in [
-        (DeformationMethod::Lbfgs, 1),
+    for (method, most) in [
+        (DeformationMethod::Lbfgs, 2),
         (DeformationMethod::Wrapd, 300),
     ] {
         let options = DeformationOptions {
             material: Material::Dirichlet,
             method,
             tolerance: 1e-15,
-            max_iterations: iterations,
             ..Default::default()
         };
         let done = solve(&mesh, (&start, &pins), &options);
+        let report = done.solver().report();
+        assert!(
+            matches!(report.status, Status::Converged(_)) && report.iteration <= most,
+            "{method:?}: {report:?}"
+        );
         for (p, q) in done.positions().iter().zip(&mesh.positions) {
             assert!(p.distance(affine(*q)) < 1e-6, "{method:?}: {p} {q}");
         }
@@ -220,6 +224,7 @@ fn stable_neo_hookean_unfolds() {
     for from in [collapsed, scattered] {
         let done = solve(&mesh, (&from, &pins), &options);
         let report = done.solver().report();
+        assert!(matches!(report.status, Status::Converged(_)), "{report:?}");
         assert_eq!(report.inverted, 0);
         assert!(
             report.energy <= best * (1.0 + 1e-6),
@@ -282,6 +287,7 @@ fn l_bfgs_descends_and_keeps_a_barrier() {
     while solver.status() == Status::Running {
         solver.step().unwrap();
     }
+    assert!(matches!(solver.status(), Status::Converged(_)));
     assert_eq!(solver.report().inverted, 0);
 }
 

@@ -3,7 +3,7 @@
 mod random;
 
 use foldfree::energy::{Dirichlet, Energy, NeoHookean, StVenantKirchhoff, StableNeoHookean};
-use foldfree::space::{Pack, Plane, Solid};
+use foldfree::space::{Pack, Plane, Solid, Space};
 use pulp::{Arch, Simd, WithSimd};
 use random::Random;
 
@@ -121,6 +121,17 @@ fn check<E: Energy<Solid>>(
             .fold(f64::INFINITY, f64::min);
         if found > best + 1e-9 * (best.abs() + stiffness) {
             worse += 1;
+            // another minimum: no saddle, no maximum
+            let h = hessian;
+            let (curvatures, _) = Solid::eigen([
+                h[0][0] + k,
+                h[1][1] + k,
+                h[2][2] + k,
+                h[0][1],
+                h[0][2],
+                h[1][2],
+            ]);
+            assert!(curvatures[2] > 0.0, "{context}: {curvatures:?}");
             println!("{context}: {found}, and {best} by search");
         }
     }
@@ -143,14 +154,15 @@ fn st_venant_kirchhoff() {
     }
 }
 
-/// The problem is not convex: from few of the targets, most of them reflected, another minimum is
-/// reached than the lowest.
+/// The problem is not convex: where k is below −λ_min of the Hessian, which −λ (J − α) times a σ can make
+/// negative, there may be several minima, and Newton's method ends in the one downhill from where it begins.
+/// Of these targets, most of them reflected, that is another than the lowest for one in a thousand.
 #[test]
 fn stable_neo_hookean() {
     for (i, poisson) in [0.45, 0.0, -0.8].into_iter().enumerate() {
         let energy = StableNeoHookean::new(1e3, poisson).unwrap();
         let worse = check("stable", energy, i as u64, 3000, stretch);
-        assert!(worse <= 15, "{worse}");
+        assert!(worse <= [3, 1, 0][i], "{worse}");
     }
 }
 
@@ -158,7 +170,7 @@ fn stable_neo_hookean() {
 fn neo_hookean() {
     let energy = NeoHookean::new(1e3, 0.45).unwrap();
     let worse = check("neo-Hookean", energy, 9, 3000, stretch);
-    assert!(worse <= 15, "{worse}");
+    assert!(worse <= 2, "{worse}");
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! What a certificate needs to know of the rest mesh: its boundary, and whether it is a disk.
 //! Derived from the triangles alone, and right for any of them: nothing here fails.
 
+use crate::disjoint_sets::DisjointSets;
+
 /// Edges, pieces and boundary of a triangle mesh.
 pub(super) struct Surface {
     /// Edges used by one triangle, in its direction (the surface on their left), sorted.
@@ -104,40 +106,6 @@ fn edge_groups(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
     }
     halves.sort_unstable_by_key(|h| (h.0, h.1));
     halves
-}
-
-/// Union–find with path halving; counts the joins that joined something.
-pub(super) struct DisjointSets {
-    parent: Vec<u32>,
-    joins: usize,
-}
-
-impl DisjointSets {
-    pub(super) fn new(n: usize) -> Self {
-        Self {
-            parent: (0..n as u32).collect(),
-            joins: 0,
-        }
-    }
-
-    fn find(&mut self, mut i: u32) -> u32 {
-        while self.parent[i as usize] != i {
-            let grandparent = self.parent[self.parent[i as usize] as usize];
-            self.parent[i as usize] = grandparent;
-            i = grandparent;
-        }
-        i
-    }
-
-    /// Joins the sets of a and b; were they two?
-    pub(super) fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.find(a), self.find(b));
-        if a != b {
-            self.parent[a.max(b) as usize] = a.min(b);
-            self.joins += 1;
-        }
-        a != b
-    }
 }
 
 #[cfg(test)]

@@ -20,11 +20,11 @@ pub fn check<const K: usize>(rest: &SimplicialMesh<K>, start: &[DVec3]) -> Resul
     if let Some(vertex) = rest.positions.iter().position(|p| !p.is_finite()) {
         return Err(MeshError::NonFinitePosition { vertex }.into());
     }
-    for (face, simplex) in rest.simplices.iter().enumerate() {
+    for (element, simplex) in rest.simplices.iter().enumerate() {
         if let Some(&index) = simplex.iter().find(|&&v| v as usize >= vertices) {
             let index = u64::from(index);
             return Err(MeshError::IndexOutOfRange {
-                face,
+                face: element,
                 index,
                 vertices,
             }

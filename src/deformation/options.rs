@@ -102,7 +102,8 @@ pub struct DeformationOptions {
     /// How hard targets pull at free vertices, relative to how hard the body holds on to the vertex (the
     /// diagonal of its stiffness matrix at rest), > 0.
     pub target_stiffness: f64,
-    /// Stop when |ΔE|/(|E| + 1) is below this.
+    /// Stop when |ΔE|/(|E| + floor), or the gradient against the body's stiffness and size, is below
+    /// this. The floor is the energy of a strain of 1.1e-4 all over: units do not matter.
     pub tolerance: f64,
     /// Stop after this many iterations.
     pub max_iterations: usize,

@@ -1,4 +1,4 @@
-//! A solid, made ready, and the solver that deforms it.
+//! A deformation in progress, of a solid or of a cloth, and how one of a solid is made.
 
 use super::body::{Body, check};
 use super::{DeformationOptions, Material, Supports, Target};
@@ -33,7 +33,8 @@ impl Deformation {
     /// # Errors
     /// [`MeshError`](crate::mesh::MeshError) for a rest shape that is none,
     /// [`BuildError`](crate::optim::BuildError) for pins, starts or options that do
-    /// not fit it.
+    /// not fit it; `NotInjectiveStart` for one with inverted elements where the energy is a barrier and the
+    /// method (L-BFGS) keeps to it.
     pub fn new(
         rest: &SolidMesh,
         start: &[DVec3],

@@ -1,5 +1,6 @@
 //! What holds a body in place: pins and targets, for every component.
 
+use crate::disjoint_sets::DisjointSets;
 use crate::mesh::{SimplicialMesh, counted};
 use crate::optim::{BuildError, Spring};
 use glam::DVec3;
@@ -46,16 +47,15 @@ impl Supports {
         }
         let mut is_held = vec![false; n];
         pins.iter().for_each(|&v| is_held[v as usize] = true);
-        let mut root: Vec<u32> = (0..n as u32).collect();
+        let mut components = DisjointSets::new(n);
         let mut used = vec![false; n];
         for simplex in &mesh.simplices {
             for &v in simplex {
                 used[v as usize] = true;
-                let (a, b) = (find(&mut root, simplex[0]), find(&mut root, v));
-                root[a.max(b) as usize] = a.min(b);
+                components.join(simplex[0], v);
             }
         }
-        let component: Vec<u32> = (0..n as u32).map(|v| find(&mut root, v)).collect();
+        let component: Vec<u32> = (0..n as u32).map(|v| components.find(v)).collect();
         let mut pinned = vec![false; n];
         for v in 0..n {
             pinned[component[v] as usize] |= is_held[v];
@@ -141,14 +141,4 @@ impl Supports {
         self.check(targets.iter().map(|t| t.vertex))?;
         Ok((moved, springs))
     }
-}
-
-/// The representative of a vertex's component: its lowest vertex.
-fn find(root: &mut [u32], v: u32) -> u32 {
-    let mut v = v;
-    while root[v as usize] != v {
-        root[v as usize] = root[root[v as usize] as usize];
-        v = root[v as usize];
-    }
-    v
 }

@@ -25,7 +25,6 @@ impl<S: Space> Energy<S> for Arap {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            floor: 0.0,
         }
     }
     #[inline(always)]

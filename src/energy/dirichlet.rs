@@ -19,7 +19,6 @@ impl<S: Space> Energy<S> for Dirichlet {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            floor: 0.0,
         }
     }
     #[inline(always)]

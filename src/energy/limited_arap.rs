@@ -61,7 +61,6 @@ impl<S: Space> Energy<S> for LimitedArap {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            floor: 0.0,
         }
     }
     /// The finite part.

@@ -20,6 +20,7 @@ pub use st_venant_kirchhoff::StVenantKirchhoff;
 pub use stable_neo_hookean::StableNeoHookean;
 pub use symmetric_dirichlet::SymmetricDirichlet;
 
+use crate::optim::Yardstick;
 use crate::space::{Lane, Space};
 
 /// A rotation-invariant energy density ψ(σ) per unit of rest measure.
@@ -59,13 +60,46 @@ pub struct Constants {
     pub scale: f64,
     /// See `scale`: what an isometry is reported to have.
     pub offset: f64,
-    /// Changes of the energy are measured against |E| + floor.
-    pub floor: f64,
 }
+
+/// The energy that a body's changes are measured against, where an isometry has none, over rest stiffness
+/// times measure: that of a strain of 1.1e-4 all over, ½·1.14e-4². Of the quasi-static problems of the
+/// paper one has a minimum of 0 (untwist: 4 m³ of Young's modulus 1e7, Poisson's ratio 0.45); for it this
+/// is 1 J, the 1 in the authors' criterion |ΔE|/(|E| + 1) < 1e-11.
+const FLOOR: f64 = 6.5e-9;
 
 impl Constants {
     /// The reported energy, from Σ A ψ and Σ A.
     pub fn reported(&self, sum: f64, measure: f64) -> f64 {
-        self.scale * (sum - self.isometry * measure) + self.offset
+        self.relative(sum, measure) + self.offset
+    }
+
+    /// The same without the offset, which of a small body would leave few digits.
+    pub fn relative(&self, sum: f64, measure: f64) -> f64 {
+        self.scale * (sum - self.isometry * measure)
+    }
+
+    /// What changes of the [`relative`](Self::relative) energy, and the gradient, are measured against for
+    /// a body of this Σ A in `stretches` dimensions. With the unit u of energy a measure – `offset`, where
+    /// an isometry has that, else the stiffness at rest – they are u Σ A, of the latter a [small
+    /// part](FLOOR), and u Σ A over the body's size (Σ A)^(1/k).
+    ///
+    /// A gradient g of the elements' Laplacian times stiffness k, with n vertices, is of an energy
+    /// E − E* ≤ |g|²/2kλ, λ ≈ π² size^(d−2)/n its least eigenvalue. At 1e-11 of this force that is, for
+    /// n = 1e4, about 1e-11 of this floor: neither criterion makes the other idle.
+    pub fn yardstick(&self, measure: f64, stretches: usize) -> Yardstick {
+        let size = match stretches {
+            2 => measure.sqrt(),
+            _ => measure.cbrt(),
+        };
+        let (unit, part) = match self.offset > 0.0 {
+            true => (self.offset, 1.0),
+            false => (self.scale * self.rest_stiffness, FLOOR),
+        };
+        Yardstick {
+            floor: part * unit * measure,
+            force: unit * (measure / size),
+            rounding: 0.0,
+        }
     }
 }

@@ -97,8 +97,6 @@ impl Energy<Solid> for NeoHookean {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            // an energy unit: the minimum may be 0 (|ΔE|/(|E| + 1) of the paper's experiments)
-            floor: 1.0,
         }
     }
 

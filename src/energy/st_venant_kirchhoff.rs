@@ -85,8 +85,6 @@ impl Energy<Solid> for StVenantKirchhoff {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            // the minimum may be 0
-            floor: 1.0,
         }
     }
 

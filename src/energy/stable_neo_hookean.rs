@@ -89,8 +89,6 @@ impl Energy<Solid> for StableNeoHookean {
             isometry: 0.0,
             scale: 1.0,
             offset: 0.0,
-            // the minimum may be 0
-            floor: 1.0,
         }
     }
 

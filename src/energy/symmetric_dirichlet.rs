@@ -92,7 +92,6 @@ impl<S: Space> Energy<S> for SymmetricDirichlet {
             isometry: 2.0 * S::STRETCHES as f64,
             scale: 0.5 / S::STRETCHES as f64,
             offset: 1.0,
-            floor: 0.0,
         }
     }
     #[inline(always)]

@@ -25,6 +25,8 @@ pub struct ArapLocalGlobal<S> {
     force: Vec<f64>,
     step: Vec<f64>,
     report: StepReport,
+    /// Changes of the energy are measured against |E| + floor: the minimum may be 0.
+    floor: f64,
     tolerance: f64,
     max_iterations: usize,
     types: PhantomData<S>,
@@ -34,7 +36,8 @@ impl<S: Space> ArapLocalGlobal<S>
 where
     Arap: Energy<S>,
 {
-    /// Factors the Laplacian and evaluates the start. Stops when |ΔE|/E or |∇E| is below `tolerance`.
+    /// Factors the Laplacian and evaluates the start. Stops when |ΔE|/(E + floor) or |∇E| is below
+    /// `tolerance`.
     ///
     /// # Errors
     /// As [`crate::wrapd::Wrapd::new`].
@@ -60,6 +63,9 @@ where
             factor,
             x: problem.start.to_vec(),
             report: StepReport::at_start(),
+            floor: Energy::<S>::constants(&Arap)
+                .yardstick(rest.measure.iter().sum(), S::STRETCHES)
+                .floor,
             tolerance,
             max_iterations,
             types: PhantomData,
@@ -139,8 +145,9 @@ where
             let vertex = bad / S::DIM;
             return Err(SolveError::NonFinite { iteration, vertex });
         }
+        let before = (before, self.floor);
         self.report
-            .settle((before, 0.0), true, self.tolerance, self.max_iterations);
+            .settle(before, true, self.tolerance, self.max_iterations);
         let evaluate = Phase::new(PhaseKind::Evaluate, 1, clock);
         self.report.seconds += begun.seconds();
         self.report.phases = vec![local, global, evaluate];

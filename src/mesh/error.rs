@@ -14,8 +14,8 @@ pub enum MeshError {
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} has a coordinate that is not finite")]
     NonFinitePosition { vertex: usize },
-    /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {index}, but there are {vertices} vertices")]
+    /// An element (a face, or a tetrahedron of a solid) names a vertex that does not exist.
+    #[error("element {face} names vertex {index}, but there are {vertices} vertices")]
     IndexOutOfRange {
         face: usize,
         index: u64,

@@ -6,6 +6,7 @@ pub mod lbfgs;
 mod solver;
 mod stopwatch;
 pub mod vectors;
+mod yardstick;
 
 pub use error::{BuildError, SolveError};
 pub use handles::{Deformer, Field, Spring};
@@ -13,3 +14,4 @@ pub use solver::{
     CancelToken, Criterion, Inspection, Observer, Phase, PhaseKind, Solver, Status, StepReport, run,
 };
 pub use stopwatch::Stopwatch;
+pub use yardstick::Yardstick;

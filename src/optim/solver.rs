@@ -1,6 +1,6 @@
 //! The one object-safe interface of all iterative solvers.
 
-use super::{SolveError, Stopwatch};
+use super::{SolveError, Stopwatch, Yardstick};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -133,8 +133,9 @@ impl StepReport {
         }
     }
 
-    /// Sets the status at the end of a step that began with the energy `before`: converged, if it `may`
-    /// be and |ΔE|/(|E| + floor) or |∇E| is below `tolerance`.
+    /// Sets the status at the end of a step that began with the energy `before`, of a map of measure 1:
+    /// converged, if it `may` be and |ΔE|/(|E| + floor) or |∇E| is below `tolerance`. For bodies of any
+    /// size and stiffness there is [`Self::conclude`].
     pub fn settle(
         &mut self,
         (before, floor): (f64, f64),
@@ -142,15 +143,22 @@ impl StepReport {
         tolerance: f64,
         max_iterations: usize,
     ) {
-        let change = (self.energy - before).abs();
-        self.status = if may && change < tolerance * (self.energy.abs() + floor) {
-            Status::Converged(Criterion::EnergyChange)
-        } else if may && self.gradient_norm < tolerance {
-            Status::Converged(Criterion::GradientNorm)
-        } else if self.iteration >= max_iterations {
-            Status::MaxIterations
-        } else {
-            Status::Running
+        let unit = Yardstick {
+            floor,
+            force: 1.0,
+            rounding: 0.0,
+        };
+        let change = self.energy - before;
+        let met = unit.criterion(change, self.energy, self.gradient_norm, tolerance);
+        self.conclude(met.filter(|_| may), max_iterations);
+    }
+
+    /// Sets the status at the end of a step: converged if a criterion is met.
+    pub fn conclude(&mut self, met: Option<Criterion>, max_iterations: usize) {
+        self.status = match met {
+            Some(criterion) => Status::Converged(criterion),
+            None if self.iteration >= max_iterations => Status::MaxIterations,
+            None => Status::Running,
         };
     }
 }

@@ -1,16 +1,15 @@
 //! Energy and gradient of a map, block by block.
 
-use crate::energy::Energy;
+use super::noise::Noise;
 use crate::geometry::{Elimination, RestShape};
-use crate::optim::Field;
+use crate::optim::{Field, Yardstick};
 use crate::parallel;
-use crate::space::Space;
-use crate::wrapd::Linear;
 use crate::wrapd::block::{BLOCK, Block, BlockSums};
-use crate::wrapd::elements::{Elements, Model, Shape};
+use crate::wrapd::elements::{Elements, Shape};
 use crate::wrapd::external::Terms;
 use crate::wrapd::kernels::Pass;
 use crate::wrapd::layout::{build_blocks, corner_lists, element_order};
+use crate::wrapd::system::System;
 
 /// Vertices that are gathered as one piece of work.
 const VERTICES: usize = 1024;
@@ -35,7 +34,7 @@ pub struct Evaluation {
 /// What an evaluation finds beside the gradient.
 #[derive(Debug, Clone, Copy)]
 pub struct Value {
-    /// Reported energy; infinite where a barrier is broken.
+    /// Reported energy without its offset; infinite where a barrier is broken.
     pub energy: f64,
     /// Elements with σ_last ≤ 0.
     pub inverted: usize,
@@ -46,14 +45,14 @@ pub struct Value {
 }
 
 impl Evaluation {
-    /// Of this energy on these rest shapes.
-    pub fn new<S: Space, E: Energy<S>>(
-        energy: E,
+    /// Of these loops over the elements, whose coupling is linear, on these rest shapes.
+    pub fn new(
+        shape: Shape,
+        elements: Box<dyn Elements>,
         rest: &RestShape,
         elimination: &Elimination,
         terms: Option<Terms>,
     ) -> Self {
-        let shape = Shape::of::<S, Linear, E>(&energy);
         let order = element_order(rest, &elimination.slot);
         let rest = &rest.reordered(&order);
         let blocks = build_blocks(rest, &elimination.slot, &shape);
@@ -61,7 +60,7 @@ impl Evaluation {
         let stride = Pass::Last.stride(shape.dimension);
         Self {
             shape,
-            elements: Box::new(Model::<S, Linear>::new(energy)),
+            elements,
             measure: rest.measure.iter().sum(),
             order,
             forces: vec![0.0; (rest.stretches + 1) * BLOCK * stride * blocks.len()],
@@ -70,6 +69,33 @@ impl Evaluation {
             corners,
             terms,
         }
+    }
+
+    /// What its energies and gradients are measured against.
+    pub fn yardstick(&self) -> Yardstick {
+        Yardstick {
+            rounding: self.rounding_of_terms(),
+            ..self
+                .shape
+                .constants
+                .yardstick(self.measure, self.shape.stretches)
+        }
+    }
+
+    /// What rounding leaves of its energies and gradients; the matrix is that of the weights at rest.
+    pub fn noise(&self, system: &System) -> Noise {
+        let constants = &self.shape.constants;
+        Noise::new(
+            self.order.len(),
+            constants.scale * constants.rest_stiffness * self.measure,
+            system.diagonal(),
+            self.rounding_of_terms(),
+        )
+    }
+
+    fn rounding_of_terms(&self) -> f64 {
+        let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
+        self.shape.constants.scale * rounding
     }
 
     /// At positions by slot; the raw energy's gradient goes to `gradient` (free vertices × dimension).
@@ -104,7 +130,7 @@ impl Evaluation {
                 false => {
                     let external = self.terms.as_ref().map_or(0.0, |t| t.energy);
                     let elements: f64 = sums().map(|s| s.f_energy).sum();
-                    constants.reported(elements + external, self.measure)
+                    constants.relative(elements + external, self.measure)
                 }
             },
             inverted,

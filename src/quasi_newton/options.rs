@@ -9,7 +9,7 @@ pub struct QuasiNewtonOptions {
     pub history: usize,
     /// c of Armijo's rule E(x + t d) ≤ E(x) + c t ∇E·d, in (0, 1).
     pub decrease: f64,
-    /// Stop when |ΔE|/(|E| + floor of the energy) or |∇E| is below this.
+    /// Stop when |ΔE|/(|E| + floor) or |∇E|/force is below this, see [`crate::optim::Yardstick`].
     pub tolerance: f64,
     /// Stop after this many iterations.
     pub max_iterations: usize,

@@ -2,22 +2,27 @@
 
 use super::QuasiNewtonOptions;
 use super::evaluation::{Evaluation, Value};
+use super::noise::Noise;
 use crate::energy::Energy;
 use crate::geometry::Elimination;
 use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{
-    BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Spring, Status,
-    StepReport, Stopwatch,
+    BuildError, Criterion, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver,
+    Spring, Status, StepReport, Stopwatch, Yardstick,
 };
 use crate::parallel;
 use crate::space::Space;
-use crate::wrapd::Problem;
+use crate::wrapd::elements::{Elements, Model, Shape};
 use crate::wrapd::external::Terms;
 use crate::wrapd::system::System;
+use crate::wrapd::{Linear, Problem};
 
 /// Most halvings of a step.
 const MOST_HALVINGS: u32 = 60;
+
+/// The same where slopes are asked: of shorter steps rounding would say nothing but what is already known.
+const MOST_HALVINGS_BY_SLOPE: u32 = 10;
 
 /// L-BFGS from a Laplacian, for any energy.
 pub struct QuasiNewton {
@@ -37,6 +42,10 @@ pub struct QuasiNewton {
     system: System,
     history: Lbfgs,
     report: StepReport,
+    /// The reported energy without its offset.
+    energy: f64,
+    yardstick: Yardstick,
+    noise: Noise,
     /// The iteration of the last change of handles, from which the most iterations are counted.
     counted_from: usize,
 }
@@ -53,34 +62,38 @@ impl QuasiNewton {
     ) -> Result<Self, BuildError> {
         options.validate()?;
         problem.validate(S::DIM, S::STRETCHES)?;
-        let n = problem.start.len() / S::DIM;
+        let shape = Shape::of::<S, Linear, E>(&energy);
+        let elements = Box::new(Model::<S, Linear>::new(energy));
+        parallel::in_pool(|| Self::build(problem, shape, elements, options))
+    }
+
+    fn build(
+        problem: Problem,
+        shape: Shape,
+        elements: Box<dyn Elements>,
+        options: QuasiNewtonOptions,
+    ) -> Result<Self, BuildError> {
+        let n = problem.start.len() / shape.dimension;
         let couplings = problem.external.map_or(&[][..], |e| &e.stiffness);
         let elimination = Elimination::with_couplings(problem.rest, n, problem.pins, couplings);
         let terms = problem.external.map(|external| {
             Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
-        let evaluation = Evaluation::new::<S, E>(energy, problem.rest, &elimination, terms);
-        parallel::in_pool(|| Self::build(problem, elimination, evaluation, options))
-    }
-
-    fn build(
-        problem: Problem,
-        elimination: Elimination,
-        evaluation: Evaluation,
-        options: QuasiNewtonOptions,
-    ) -> Result<Self, BuildError> {
-        let constants = evaluation.shape.constants;
+        let evaluation = Evaluation::new(shape, elements, problem.rest, &elimination, terms);
+        let constants = shape.constants;
         let mut system = System::new(problem.rest, &elimination, problem.external)?;
         system
             .factorize(evaluation.terms.as_ref(), |_| constants.rest_stiffness)
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
 
         let Elimination { slot, free, .. } = elimination;
-        let dimension = evaluation.shape.dimension;
+        let dimension = shape.dimension;
         let mut x = vec![0.0; problem.start.len()];
         for (position, &s) in problem.start.chunks_exact(dimension).zip(&slot) {
             x[s as usize * dimension..][..dimension].copy_from_slice(position);
         }
+        let yardstick = evaluation.yardstick();
+        let noise = evaluation.noise(&system);
         let unknowns = || vec![0.0; free * dimension];
         let mut this = Self {
             options,
@@ -95,6 +108,9 @@ impl QuasiNewton {
             system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            energy: f64::INFINITY,
+            yardstick,
+            noise,
             counted_from: 0,
         };
         let start = this.evaluation.at(&this.x, &mut this.gradient);
@@ -111,7 +127,8 @@ impl QuasiNewton {
 
     /// Fills the report from an evaluation whose gradient is in `gradient`.
     fn take(&mut self, value: Value) {
-        self.report.energy = value.energy;
+        self.energy = value.energy;
+        self.report.energy = value.energy + self.evaluation.shape.constants.offset;
         self.report.inverted = value.inverted;
         self.report.smallest_sigma = value.smallest;
         self.report.largest_sigma = value.largest;
@@ -141,11 +158,15 @@ impl QuasiNewton {
         slope
     }
 
-    /// The longest of the steps 1, ½, ¼, … that satisfies Armijo's rule, and the evaluation there, which
-    /// is in `trial` and `trial_gradient`; the number of trials.
+    /// The longest of the steps 1, ½, ¼, … that satisfies Armijo's rule, or, where the energy is the same
+    /// but for rounding, what that rule says of a parabola's slopes; and the evaluation there, which is in
+    /// `trial` and `trial_gradient`; the number of trials.
     fn search(&mut self, slope: f64) -> (Option<(f64, Value)>, u32) {
         let unknowns = self.direction.len();
         let demanded = self.options.decrease * self.evaluation.shape.constants.scale * slope;
+        let noise = self.noise.of_energy(self.energy);
+        // φ(t) ≤ φ(0) + c t φ'(0) of a parabola φ, whose φ(t) − φ(0) is t (φ'(0) + φ'(t))/2
+        let steepest = (1.0 - 2.0 * self.options.decrease) * -slope;
         let mut t = 1.0;
         for trials in 1..=MOST_HALVINGS {
             let along = core::iter::once((t, &self.direction[..]));
@@ -155,7 +176,11 @@ impl QuasiNewton {
                 &mut self.trial[..unknowns],
             );
             let value = self.evaluation.at(&self.trial, &mut self.trial_gradient);
-            if value.energy < f64::INFINITY && value.energy <= self.report.energy + t * demanded {
+            let falls = value.energy <= self.energy + t * demanded;
+            let same = trials <= MOST_HALVINGS_BY_SLOPE && value.energy <= self.energy + noise;
+            if value.energy < f64::INFINITY
+                && (falls || same && dot(&self.trial_gradient, &self.direction) <= steepest)
+            {
                 return (Some((t, value)), trials);
             }
             t *= 0.5;
@@ -163,10 +188,16 @@ impl QuasiNewton {
         (None, MOST_HALVINGS)
     }
 
+    /// Is the gradient no more than rounding?
+    fn is_at_rest(&self) -> bool {
+        let scale = self.evaluation.shape.constants.scale;
+        self.report.gradient_norm <= scale * self.noise.of_gradient(&self.x)
+    }
+
     fn iterate(&mut self) -> Result<(), SolveError> {
         let begun = Stopwatch::start();
         let dimension = self.evaluation.shape.dimension;
-        let before = self.report.energy;
+        let before = self.energy;
         let iteration = self.report.iteration + 1;
         if let Some(bad) = self.gradient.iter().position(|g| !g.is_finite()) {
             let slot = (bad / dimension) as u32;
@@ -205,18 +236,28 @@ impl QuasiNewton {
                 for (position, &s) in self.positions.chunks_exact_mut(dimension).zip(&self.slot) {
                     position.copy_from_slice(&self.x[s as usize * dimension..][..dimension]);
                 }
-                self.report.settle(
-                    (before, self.evaluation.shape.constants.floor),
-                    true,
+                let met = self.yardstick.criterion(
+                    self.energy - before,
+                    self.energy,
+                    self.report.gradient_norm,
                     self.options.tolerance,
-                    self.counted_from + self.options.max_iterations,
                 );
+                // where only slopes are left to go by, the end is where they are rounding, too
+                let ends = self.options.tolerance > 0.0
+                    && (self.energy - before).abs() <= self.noise.of_energy(before)
+                    && self.is_at_rest();
+                let met = met.or(ends.then_some(Criterion::GradientNorm));
+                let most = self.counted_from + self.options.max_iterations;
+                self.report.conclude(met, most);
             }
-            // also at a minimum to rounding, where no step is seen to lower the energy
+            // no step is seen to lower the energy: as it should be at a minimum
             None => {
                 // what is inspected is the iterate, not the last trial
                 self.evaluation.at(&self.x, &mut self.trial_gradient);
-                self.report.status = Status::Stalled;
+                self.report.status = match self.is_at_rest() {
+                    true => Status::Converged(Criterion::GradientNorm),
+                    false => Status::Stalled,
+                };
             }
         }
         let evaluate = Phase::new(PhaseKind::Evaluate, trials, clock);
@@ -279,6 +320,7 @@ impl Deformer for QuasiNewton {
                         iteration: self.report.iteration,
                         pivot: e.pivot,
                     })?;
+                self.noise = self.evaluation.noise(&self.system);
             }
             // the objective is another one, and its gradient at the same point, too
             self.history.clear();

@@ -23,7 +23,8 @@ pub struct DeformationSettings {
     pub method: DeformationMethod,
     /// How hard targets pull at free vertices, relative to how hard the body holds on to them.
     pub target_stiffness: f64,
-    /// Stop when |ΔE|/(|E| + 1) is below this.
+    /// Stop when |ΔE|/(|E| + floor), or the gradient against the body's stiffness and size, is below
+    /// this. The floor is the energy of a strain of 1.1e-4 all over: units do not matter.
     pub tolerance: f64,
     /// Stop after this many iterations.
     pub max_iterations: usize,

@@ -31,10 +31,10 @@ impl WasmSolid {
             return Err(invalid_argument("tetrahedra", what));
         }
         let vertices = positions.len();
-        for (face, tetrahedron) in simplices.iter().enumerate() {
+        for (element, tetrahedron) in simplices.iter().enumerate() {
             if let Some(&index) = tetrahedron.iter().find(|&&v| v as usize >= vertices) {
                 return Err(thrown(MeshError::IndexOutOfRange {
-                    face,
+                    face: element,
                     index: index.into(),
                     vertices,
                 }));

@@ -21,8 +21,8 @@ pub type Few = [f64; MOST];
 /// An energy, element by element. `count` elements at the front of each row count; it is [`PACKS`] times
 /// this machine's SIMD width.
 pub trait Densities: Send + Sync {
-    /// The prox (6) at the singular values `p` with weights `k`: `sigma` is where it begins (> 0), and the
-    /// result; `density` is ψ there, `stiffness`, if wanted, K_e (20). Returns the most inner iterations.
+    /// The prox (6) at the singular values `p` with weights `k`: `sigma` is where it begins (> 0, but for
+    /// the last of an energy without barrier), and the result; `density` is ψ there, `stiffness`, if wanted, K_e (20). Returns the most inner iterations.
     fn prox(
         &self,
         count: usize,

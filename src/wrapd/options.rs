@@ -63,7 +63,9 @@ pub struct WrapdOptions {
     pub history: usize,
     /// Most L-BFGS iterations of one global step (§4.1: 100).
     pub max_global_iterations: usize,
-    /// Stop when |ΔE|/E or |∇E| is below this, with no flips in the last two iterates.
+    /// Stop when |ΔE|/(|E| + floor) or |∇E|/force is below this, see [`crate::optim::Yardstick`], with no
+    /// flips in the last two iterates. Of a map of measure 1 and an energy of 1 at least, as those of
+    /// parameterization, that is |ΔE|/E or |∇E|.
     pub tolerance: f64,
     /// Stop after this many iterations.
     pub max_iterations: usize,

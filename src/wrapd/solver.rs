@@ -15,13 +15,20 @@ use crate::optim::lbfgs::Lbfgs;
 use crate::optim::vectors::{add_combination, dot};
 use crate::optim::{
     BuildError, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver, Status,
-    StepReport, Stopwatch,
+    StepReport, Stopwatch, Yardstick,
 };
 use crate::parallel;
 use crate::space::Space;
 
 /// Vertices that are gathered as one piece of work.
 const VERTICES: usize = 1024;
+
+/// Steps that the global step takes as they come (§4.1). It needs two or three; one that needs many does
+/// not descend, as happens where Z − U is far from any stretch, and from there on steps are shortened.
+const TRUSTED: usize = 20;
+
+/// Most times that a step is shortened.
+const MOST_SHORTENINGS: usize = 4;
 
 /// By how much singular values may miss hard limits at convergence.
 const LIMIT_SLACK: f64 = 1e-6;
@@ -55,6 +62,9 @@ pub struct Wrapd {
     system: System,
     history: Lbfgs,
     report: StepReport,
+    /// The reported energy without its offset.
+    energy: f64,
+    yardstick: Yardstick,
     /// Iterations with the rest weights, for this start.
     delay: usize,
     /// No flips at the previous iterate?
@@ -114,11 +124,16 @@ impl Wrapd {
             x[s..s + dimension].copy_from_slice(&problem.start[v * dimension..(v + 1) * dimension]);
         }
         let unknowns = free * dimension;
+        let measure: f64 = rest.measure.iter().sum();
+        let yardstick = Yardstick {
+            rounding: shape.constants.scale * terms.as_ref().map_or(0.0, |t| t.rounding),
+            ..shape.constants.yardstick(measure, shape.stretches)
+        };
         let mut this = Self {
             options,
             shape,
             elements,
-            measure: rest.measure.iter().sum(),
+            measure,
             slot,
             order,
             forces: vec![0.0; corners_per_block * blocks.len()],
@@ -135,6 +150,8 @@ impl Wrapd {
             system,
             history: Lbfgs::new(options.history),
             report: StepReport::at_start(),
+            energy: f64::INFINITY,
+            yardstick,
             delay: 0,
             was_injective: false,
             counted_from: 0,
@@ -157,7 +174,7 @@ impl Wrapd {
         self.evaluate(sums);
         if self.shape.barrier && self.report.inverted > 0 {
             // no Z belongs to these positions, whose energy could stand in
-            self.report.energy = f64::INFINITY;
+            (self.energy, self.report.energy) = (f64::INFINITY, f64::INFINITY);
         }
         self.was_injective = self.report.inverted == 0;
     }
@@ -260,7 +277,8 @@ impl Wrapd {
         };
         let external = self.terms.as_ref().map_or(0.0, |t| t.energy);
         let constants = &self.shape.constants;
-        self.report.energy = constants.reported(sum + external, self.measure);
+        self.energy = constants.relative(sum + external, self.measure);
+        self.report.energy = self.energy + constants.offset;
         if barrier_broken {
             self.report.gradient_norm = f64::INFINITY;
         }
@@ -301,9 +319,27 @@ impl Wrapd {
                 || !(-slope > bound)
                 || count >= self.options.max_global_iterations;
             let pass = if last { Pass::Last } else { Pass::Forces };
-            let sums = self.pass(pass);
+            let mut sums = self.pass(pass);
             self.gather(pass);
             if !self.shape.linear {
+                // maps of the plane are left as the paper has them
+                let shortenings = match count > TRUSTED && self.shape.dimension > 2 {
+                    true => MOST_SHORTENINGS,
+                    false => 0,
+                };
+                for _ in 0..shortenings {
+                    let after = dot(&self.next_gradient, &self.direction);
+                    // a parabola rises over a step that ends steeper than it began
+                    if !(after > -slope) {
+                        break;
+                    }
+                    // to where the slope vanishes, if it goes on as between the two ends
+                    let t = slope / (slope - after);
+                    self.retreat(t);
+                    slope *= t;
+                    sums = self.pass(pass);
+                    self.gather(pass);
+                }
                 if !uphill {
                     self.history
                         .push(&self.direction, &self.gradient, &self.next_gradient);
@@ -314,6 +350,17 @@ impl Wrapd {
                 return (count, sums);
             }
         }
+    }
+
+    /// Makes the last step `t` times as long.
+    fn retreat(&mut self, t: f64) {
+        let unknowns = self.direction.len();
+        add_combination(
+            core::iter::once((t - 1.0, &self.direction[..])),
+            &mut self.x[..unknowns],
+        );
+        self.direction.iter_mut().for_each(|d| *d *= t);
+        self.history.shorten(t);
     }
 
     /// Copies the positions by slot to those by vertex.
@@ -358,7 +405,7 @@ impl Wrapd {
         let begun = Stopwatch::start();
         let dimension = self.shape.dimension;
         let k = self.report.iteration;
-        let before = self.report.energy;
+        let before = self.energy;
 
         let clock = Stopwatch::start();
         let clamp = match self.options.reweighting {
@@ -414,15 +461,15 @@ impl Wrapd {
         let [least, most] = self.shape.limits;
         let kept = self.report.smallest_sigma >= least - LIMIT_SLACK
             && self.report.largest_sigma <= most + LIMIT_SLACK;
-        // a change that is no more than the rounding error of the terms says nothing
-        let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
-        let floor = self.shape.constants.floor + rounding / self.options.tolerance.max(1e-300);
-        self.report.settle(
-            (before, floor),
-            injective && self.was_injective && kept,
+        let met = self.yardstick.criterion(
+            self.energy - before,
+            self.energy,
+            self.report.gradient_norm,
             self.options.tolerance,
-            self.counted_from + self.options.max_iterations,
         );
+        let may = injective && self.was_injective && kept;
+        let most = self.counted_from + self.options.max_iterations;
+        self.report.conclude(met.filter(|_| may), most);
         self.was_injective = injective;
         self.report.seconds += begun.seconds();
         let evaluate_phase = Phase::new(PhaseKind::Evaluate, 1, clock);

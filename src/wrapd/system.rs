@@ -37,6 +37,13 @@ impl System {
         })
     }
 
+    /// The diagonal of the matrix.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> {
+        // the first entry of each column of the lower triangle
+        let columns = self.matrix.matrix().col_iter();
+        columns.filter_map(|column| column.values().first().copied())
+    }
+
     /// Fills and factors the matrix of these stiffnesses k, one an element.
     pub fn factorize(
         &mut self,

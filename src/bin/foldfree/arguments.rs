@@ -90,7 +90,7 @@ pub struct Deform {
     /// behind; INIT if left out.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
-    /// Where it starts: .node, .mesh, .msh or .vtk, also with .gz behind. May be inverted.
+    /// Where it starts: .node (or .ele), .mesh, .msh or .vtk, also with .gz behind. May be inverted.
     #[arg(long, value_name = "I")]
     pub init: PathBuf,
     /// Elastic energy.
@@ -125,10 +125,11 @@ impl Deform {
 /// Let a cloth come to rest under its weight; exit code 2 when it did not converge. Units are SI.
 #[derive(Debug, Args)]
 pub struct Cloth {
-    /// Rest shape: a mesh of triangles, also with .gz behind; INIT if left out.
+    /// Rest shape, triangles: .obj, .off, .ply, .stl, .mesh, .msh or .vtk, also with .gz behind; INIT if left
+    /// out.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
-    /// Where it starts: a mesh of the same vertices, also with .gz behind.
+    /// Where it starts: a mesh of the same vertices, in any of these formats.
     #[arg(long, value_name = "I")]
     pub init: PathBuf,
     /// Young's modulus times thickness, in N/m.
@@ -172,12 +173,12 @@ impl Cloth {
 /// Check a map exactly; exit code 2 when it folds (a triangle or tetrahedron is inverted or degenerate).
 #[derive(Debug, Args)]
 pub struct Check {
-    /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh, or the .node of a deformed
-    /// solid; also with .gz behind.
+    /// The map: an .obj with texture coordinates, or (with --rest) a flat mesh (.obj, .off, .ply, .stl, .mesh,
+    /// .msh, .vtk) or a deformed solid (.node, .mesh, .msh, .vtk); also with .gz behind.
     #[arg(value_name = "MAP")]
     pub map: PathBuf,
     /// The surface that is mapped, where it is not in MAP: the same triangles in the same order. The solid
-    /// that is deformed: .node and .ele.
+    /// that is deformed: .node and .ele, .mesh, .msh or .vtk.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
     /// Exit code 2 also when the map overlaps itself (is not injective as a whole).

@@ -7,14 +7,15 @@ use crate::{Outcome, files, say, solids};
 use foldfree::certificate::{Certificate, SolidCertificate};
 use foldfree::mesh::prepare;
 use foldfree::optim::Stopwatch;
+use glam::DVec3;
 
 /// Reads the map, examines it and says what was found.
 pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
     if let Some(path) = &arguments.report {
         files::check_writable(path)?;
     }
-    if solids::is_solid(&arguments.map) {
-        return run_on_solid(arguments);
+    if let Some(positions) = solids::read_if_solid(&arguments.map)? {
+        return run_on_solid(arguments, &positions);
     }
     let mut map = files::read_map(&arguments.map, arguments.rest.as_deref())?;
     let mut notes = Vec::new();
@@ -41,7 +42,7 @@ pub fn run(arguments: &Check) -> Result<Outcome, Failure> {
 }
 
 /// The same for the deformed vertices of a solid.
-fn run_on_solid(arguments: &Check) -> Result<Outcome, Failure> {
+fn run_on_solid(arguments: &Check, positions: &[DVec3]) -> Result<Outcome, Failure> {
     let Some(rest_path) = &arguments.rest else {
         let what = "a solid is deformed from its rest shape: give it with --rest";
         return Err(Failure::of_file(&arguments.map, what));
@@ -52,14 +53,13 @@ fn run_on_solid(arguments: &Check) -> Result<Outcome, Failure> {
     }
     let file = solids::read_solid(rest_path)?;
     let rest = file.mesh;
-    let positions = solids::read_positions(&arguments.map)?;
     if positions.len() != rest.positions.len() {
         let (found, expected) = (positions.len(), rest.positions.len());
         let what = format!("has {found} vertices, the rest shape {expected}");
         return Err(Failure::of_file(&arguments.map, what));
     }
     let clock = Stopwatch::start();
-    let certificate = SolidCertificate::try_of_solid(&rest, &positions)
+    let certificate = SolidCertificate::try_of_solid(&rest, positions)
         .map_err(|error| Failure::of_file(rest_path, error))?;
     let certificate_seconds = clock.seconds();
     if !arguments.quiet {

@@ -11,6 +11,13 @@ use std::path::Path;
 pub fn run(arguments: &Generate) -> Result<Outcome, Failure> {
     let (out, count) = (&arguments.out, arguments.triangles as usize);
     match arguments.shape {
+        Sample::Surface(_) => files::format(out).map(drop)?,
+        Sample::Solid(_) => solids::check_format(out)?,
+    }
+    solids::files_of(out, matches!(arguments.shape, Sample::Solid(_)))
+        .iter()
+        .try_for_each(|file| files::check_writable(file))?;
+    match arguments.shape {
         Sample::Surface(shape) => surface(shape, count, out),
         Sample::Solid(shape) => solid(shape, count, out),
     }
@@ -18,7 +25,6 @@ pub fn run(arguments: &Generate) -> Result<Outcome, Failure> {
 
 fn surface(shape: Shape, triangles: usize, out: &Path) -> Result<Outcome, Failure> {
     let format = files::format(out)?;
-    files::check_writable(out)?;
     let mesh = foldfree::mesh::generate(shape, triangles);
     let bytes = io::write(&mesh, format);
     files::write(out, &bytes)?;
@@ -32,8 +38,6 @@ fn surface(shape: Shape, triangles: usize, out: &Path) -> Result<Outcome, Failur
 }
 
 fn solid(shape: SolidShape, tetrahedra: usize, out: &Path) -> Result<Outcome, Failure> {
-    solids::check_format(out)?;
-    files::check_writable(out)?;
     let mesh = foldfree::mesh::generate_solid(shape, tetrahedra);
     let written = solids::write_solid(out, &mesh)?;
     say(&format!(

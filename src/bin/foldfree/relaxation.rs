@@ -34,14 +34,15 @@ pub struct Relaxation {
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]
     pub iterations: usize,
-    /// Stop when the change of the energy, relative to |E| (of solids: |E| + 1), is below this.
+    /// Stop when the change of the energy, relative to |E| and that of a strain of 1.1e-4 all over, is
+    /// below this, or the gradient relative to the body's stiffness and size.
     #[arg(long, value_name = "T", default_value_t = DeformationOptions::default().tolerance, value_parser = tolerance)]
     pub tolerance: f64,
     /// Threads; 0: as many as the machine has.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
     pub threads: usize,
-    /// Write the deformed vertices (.node), the solid (.mesh, .msh, .vtk) or the surface (.obj, .off,
-    /// .ply, .stl), also with .gz behind.
+    /// Write the deformed body: the vertices of a solid (.node), a solid (.mesh, .msh, .vtk), its surface or
+    /// a cloth (.obj, .off, .ply, .stl; a cloth also .mesh, .msh, .vtk); also with .gz behind.
     #[arg(long, value_name = "OUT")]
     pub out: Option<PathBuf>,
     /// Write what happened, iteration by iteration, as JSON.

@@ -63,12 +63,21 @@ pub fn read_positions(path: &Path) -> Result<Vec<DVec3>, Failure> {
     Ok(nodes.positions)
 }
 
-/// Does this file hold tetrahedra?
-pub fn is_solid(path: &Path) -> bool {
-    match beside(path, "node") {
-        Some(_) => true,
-        None => format(path).is_ok_and(|f| f.holds_solids()) && read_solid(path).is_ok(),
+/// The vertices of a solid, if that is what this file holds: those of a .node, or of a file with tetrahedra.
+///
+/// # Errors
+/// As [`read_positions`] of a .node or .ele. What is wrong with another file is for the reader of surfaces to
+/// say.
+pub fn read_if_solid(path: &Path) -> Result<Option<Vec<DVec3>>, Failure> {
+    if beside(path, "node").is_some() {
+        return read_positions(path).map(Some);
     }
+    if !format(path).is_ok_and(Format::holds_solids) {
+        return Ok(None);
+    }
+    let solid = read_solid(path).ok().map(|file| file.mesh);
+    let solid = solid.filter(|mesh| !mesh.simplices.is_empty());
+    Ok(solid.map(|mesh| mesh.positions))
 }
 
 /// Fails when [`write_deformed`] would not know the name: said before the work rather than after.
@@ -102,6 +111,14 @@ pub fn write_solid(path: &Path, solid: &SolidMesh) -> Result<String, Failure> {
     files::write(&node, &write_node(&solid.positions))?;
     files::write(&ele, &write_ele(solid))?;
     Ok(format!("{}, {}", node.display(), ele.display()))
+}
+
+/// The files that are written under a name: of a solid may be two.
+pub fn files_of(path: &Path, solid: bool) -> Vec<PathBuf> {
+    match pair(path) {
+        Some(both) if solid => both.into(),
+        _ => vec![path.to_path_buf()],
+    }
 }
 
 /// The .node and the .ele file that a name of either stands for.

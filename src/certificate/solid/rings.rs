@@ -1,6 +1,6 @@
 //! How tetrahedra stand around edges and vertices: what joins them, and what bounds them.
 
-use super::super::surface::DisjointSets;
+use crate::disjoint_sets::DisjointSets;
 
 /// The tetrahedra of an edge that form one ring or one fan.
 pub(super) struct Ring {

@@ -1,6 +1,7 @@
 //! Choosing the edges to cut.
 
 use super::{SurfaceMesh, Topology};
+use crate::disjoint_sets::DisjointSets;
 use crate::mesh::topology::{next, previous};
 use glam::DVec3;
 use std::cmp::Reverse;
@@ -312,31 +313,4 @@ pub(super) fn slit(graph: &EdgeGraph, start: u32) -> Vec<bool> {
         }
     }
     is_seam
-}
-
-/// Union–find with path halving.
-struct DisjointSets(Vec<u32>);
-
-impl DisjointSets {
-    fn new(count: usize) -> Self {
-        Self((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut element: u32) -> u32 {
-        while self.0[element as usize] != element {
-            let parent = self.0[element as usize];
-            let grandparent = self.0[parent as usize];
-            self.0[element as usize] = grandparent;
-            element = grandparent;
-        }
-        element
-    }
-
-    /// Joins two sets; false if they were one.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        // The lower becomes the root: no ranks, the halving is enough.
-        self.0[a.max(b) as usize] = a.min(b);
-        a != b
-    }
 }

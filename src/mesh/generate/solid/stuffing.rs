@@ -53,8 +53,11 @@ struct Cut {
     fraction: f64,
 }
 
-/// Fills the solid f < 0 within `bounds` (lower and upper corner) with tetrahedra of edge length about
-/// `spacing` (the side of a cell of the body-centred cubic lattice; a cell has twelve).
+/// Fills the solid f < 0 with tetrahedra of edge length about `spacing` (the side of a cell of the
+/// body-centred cubic lattice; a cell has twelve).
+///
+/// `bounds` (lower and upper corner) are those of the solid, which they do not cut: what sticks out of
+/// them is cut off within two spacings.
 ///
 /// |f| must not be greater than the distance to the surface f = 0 (a function whose gradient is
 /// nowhere longer than 1 qualifies); far from the surface it is evaluated sparsely. Every dihedral
