@@ -63,17 +63,16 @@ fn same(
     }
 }
 
-fn solid(
-    start: &dyn Fn(&SolidMesh) -> (Vec<DVec3>, Vec<u32>),
-    length: f64,
-    options: &DeformationOptions,
-) -> End {
+fn solid(start: Start, length: f64, options: &DeformationOptions) -> End {
     let mut mesh = bar(4, 2);
     let (mut positions, pins) = start(&mesh);
     mesh.positions.iter_mut().for_each(|p| *p *= length);
     positions.iter_mut().for_each(|p| *p *= length);
     run(Deformation::new(&mesh, &positions, &pins, options).unwrap())
 }
+
+/// Where a bar starts, and its pins.
+type Start = fn(&SolidMesh) -> (Vec<DVec3>, Vec<u32>);
 
 /// Twisted and held at both ends: the minimum is positive.
 fn held(mesh: &SolidMesh) -> (Vec<DVec3>, Vec<u32>) {
@@ -109,7 +108,7 @@ fn of_a_solid_with_a_modulus() {
         (0, DeformationMethod::Lbfgs),
         (1, DeformationMethod::Lbfgs),
     ] {
-        for (name, start) in [("held", held as fn(&SolidMesh) -> _), ("freed", freed)] {
+        for (name, start) in [("held", held as Start), ("freed", freed)] {
             let end = |length: f64, stiffer: f64| {
                 let options = DeformationOptions {
                     material: elastic(stiffer * YOUNG)[i],
@@ -118,7 +117,7 @@ fn of_a_solid_with_a_modulus() {
                     tolerance: if name == "held" { 1e-9 } else { 1e-7 },
                     ..Default::default()
                 };
-                solid(&start, length, &options)
+                solid(start, length, &options)
             };
             let plain = end(1.0, 1.0);
             println!(
@@ -154,7 +153,7 @@ fn of_a_solid_without() {
         (Material::Dirichlet, 0.0),
         (Material::SymmetricDirichlet, 1.0),
     ] {
-        for (name, start) in [("held", held as fn(&SolidMesh) -> _), ("freed", freed)] {
+        for (name, start) in [("held", held as Start), ("freed", freed)] {
             if material == Material::Dirichlet && name == "freed" {
                 // it vanishes, and what is inverted has not converged
                 continue;
@@ -165,7 +164,7 @@ fn of_a_solid_without() {
                     tolerance: 1e-9,
                     ..Default::default()
                 };
-                solid(&start, length, &options)
+                solid(start, length, &options)
             };
             let plain = end(1.0);
             println!(
