@@ -6,12 +6,15 @@ import { DeformSession } from './deform-session.js';
 import { medit, readSolidFiles, save } from './files.js';
 import { Handles } from './handles.js';
 import { Mode, nextFrame } from './mode.js';
-import { clearNotice, describe, notice } from './notice.js';
+import { describe } from './notice.js';
 import { PRESETS, collapsed, scattered, scene } from './presets.js';
 import { METHODS, ending, number, whole } from './words.js';
 
 /** How far a key moves a handle, in radii of the solid. */
 const NUDGE = 0.04;
+
+/** Title of a notice. */
+const NOTHING_HELD = 'Nothing is held';
 
 /** Materials that have moduli. */
 const ELASTIC = ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff'];
@@ -30,6 +33,8 @@ export class Deform extends Mode {
   #moved = 0; // iterations the motion of the scene has made
   #ticks = []; // when iterations came, for their rate
   #controls = new DeformControls(this);
+  #turn = 0; // what was asked of the solver last; anything older is overtaken
+  #held = []; // the handles the solver knows
 
   constructor(page) {
     super(page, 'deform');
@@ -84,43 +89,65 @@ export class Deform extends Mode {
   /** Puts `next` on the bench in the scene of the preset; on failure the bench stays as it is. */
   async open(next = this.source, { busy = '', keep = false } = {}) {
     this.pause();
-    const { session, page } = this;
+    const { session } = this;
     const asked = { ...this.wanted };
-    if (busy) page.busy(busy);
+    const turn = ++this.#turn;
+    const overtaken = () => turn !== this.#turn;
+    if (busy) this.busy(busy);
     let solid;
     const same = session.solid !== undefined && session.problem?.source === next;
     try {
       solid = same ? session.solid : await session.read(next);
-      const made = scene(asked.preset, solid.positions);
+      if (overtaken()) {
+        if (!same) solid.free();
+        return false;
+      }
+      const made = scene(asked.preset, solid.positions, keep ? this.handles.groups.map(({ vertices }) => vertices) : undefined);
       const handles = new Handles();
-      if (keep) for (const { vertices } of this.handles.groups) handles.add(vertices, made.start);
-      else for (const vertices of made.held) handles.add(vertices, made.start);
+      for (const vertices of made.held) handles.add(vertices, made.start);
       handles.selected = -1;
+      // From here on the solid is the session's, except when it fails.
       const start = await session.build({
-        source: next, solid, settings: this.#settings, pins: handles.pins(), start: made.start, fresh: true,
+        source: next, solid, settings: this.#settings, pins: handles.pins(), start: () => made.start, fresh: true,
       });
       if (!start) return false;
       this.source = next;
       [this.handles, this.#scene, this.#rest, this.#moved] = [handles, made, solid.positions, 0];
-      if (keep && made.motion && !matches(handles.groups[1]?.vertices, made.held[1])) this.#scene.motion = undefined;
       if (!same) this.bench.solid({ positions: solid.positions, tetrahedra: solid.tetrahedra, surface: solid.surface });
       this.#look();
       this.#begin(start, asked.preset);
       this.remember();
-      if (this.active) clearNotice();
-      this.#good = asked;
+      this.clearNotice();
+      this.#settled(asked);
       return true;
     } catch (error) {
+      if (overtaken()) return false;
       if (!same) solid?.free();
       const name = next.name ?? next.solid;
-      notice(next === this.source && session.ready ? 'The solver could not start' : `${name} was not opened`, describe(error));
-      Object.assign(this.wanted, this.#good);
+      this.notice(next === this.source && session.ready ? 'The solver could not start' : `${name} was not opened`, describe(error));
+      this.#takeBack();
       if (this.records.length) this.show(this.shown, { quietly: true });
       return false;
     } finally {
-      page.busy('');
-      this.reflect();
+      if (!overtaken()) {
+        this.busy('');
+        this.reflect();
+      }
     }
+  }
+
+  /** What the controls say, and what is held, is what the solver has. */
+  #settled(wanted) {
+    this.#good = wanted;
+    this.#held = [...this.handles.groups];
+  }
+
+  /** The controls and the handles go back to what the solver has. */
+  #takeBack() {
+    Object.assign(this.wanted, this.#good);
+    this.handles.keepOnly(this.#held);
+    this.#drawHandles();
+    this.reflect();
   }
 
   /** A run begins on the canvas. */
@@ -134,32 +161,42 @@ export class Deform extends Mode {
     this.invite();
   }
 
-  /** A new solver from where the solid is now, for other pins, another material or another method. */
-  async #rebuild({ fresh = false, start = this.session.positions, go = true } = {}) {
+  /**
+   * A new solver from where the solid is now, for other pins, another material or another method; says how that ended:
+   * `done`, `failed` (controls and handles are back at what they were), `overtaken` by something asked for later, or
+   * `suspended` while nothing is held.
+   */
+  async #rebuild({ fresh = false, start = (positions) => positions, go = true } = {}) {
+    const { session } = this;
     const pins = this.handles.pins();
+    const turn = ++this.#turn;
+    const asked = { ...this.wanted };
+    this.pause();
     if (pins.length === 0) {
-      this.pause();
-      this.session.suspend();
-      notice('Nothing is held', 'Pin something before it can go on: click a vertex, or drag a box around some with Shift.', { plain: true });
-      return false;
+      session.suspend();
+      this.notice(NOTHING_HELD, 'Pin something before it can go on: click a vertex, or drag a box around some with Shift.', { plain: true });
+      this.#settled(asked);
+      return 'suspended';
     }
+    this.clearNotice(NOTHING_HELD);
     // Pins that were released or added have to be known before anything moves.
     const begun = this.records.length > 1;
-    this.pause();
     try {
-      const made = await this.session.build({
-        source: this.source, settings: this.#settings, pins, start: this.handles.applied(start), targets: this.handles.targets(),
-        fresh: fresh || !begun,
+      const made = await session.build({
+        source: this.source, settings: this.#settings, pins, targets: this.handles.targets(), fresh: fresh || !begun,
+        start: () => this.handles.applied(start(session.positions)),
       });
-      if (!made) return false;
+      if (!made || turn !== this.#turn) return 'overtaken';
       if (fresh || !begun) this.#begin(made, begun ? 'here' : this.wanted.preset);
       this.#facts();
-      this.#good = { ...this.wanted };
+      this.#settled(asked);
       if (go && begun) this.#hurry();
-      return true;
+      return 'done';
     } catch (error) {
-      notice('The solver could not go on', describe(error));
-      return false;
+      if (turn !== this.#turn) return 'overtaken';
+      this.notice('The solver could not go on', describe(error));
+      this.#takeBack();
+      return 'failed';
     }
   }
 
@@ -188,21 +225,21 @@ export class Deform extends Mode {
 
   async runFreely(mayGo) {
     try {
-      await this.beforeStep();
+      if (mayGo()) await this.beforeStep();
       if (!mayGo()) return false;
       await this.session.run(async (step, skipped) => {
         skipped.forEach((record) => this.bench.pushNumbers(record));
         this.#tick(skipped.length);
         this.took(step);
         // One step of the motion a frame: what is inside has time to follow what is held.
-        await Promise.all([this.beforeStep(), nextFrame()]);
+        await Promise.all([mayGo() && this.beforeStep(), nextFrame()]);
         if (!mayGo()) this.session.stop();
       });
       // A target that moved while the last step was being made keeps it going.
       await nextFrame();
       return !this.session.finished || this.restless;
     } catch (error) {
-      notice('The solver stopped', describe(error));
+      this.notice('The solver stopped', describe(error));
       return false;
     }
   }
@@ -235,6 +272,8 @@ export class Deform extends Mode {
 
   /** Goes on at full speed until it rests. */
   #hurry() {
+    if (!this.active) return;
+    if (this.playing && !this.solving) this.pause();
     this.hurried = true;
     if (!this.playing) this.keepGoing();
   }
@@ -259,11 +298,12 @@ export class Deform extends Mode {
     if (spoil && this.records.length > 1 && this.handles.groups.length > 0) {
       this.pause();
       if (this.#scene) this.#scene.motion = undefined;
-      const start = spoil(this.#rest, this.handles.applied(this.session.positions), this.handles.pins());
-      if (!(await this.#rebuild({ fresh: true, start, go: false }))) return;
+      const pins = this.handles.pins();
+      const start = (positions) => spoil(this.#rest, positions, pins);
+      if ((await this.#rebuild({ fresh: true, start, go: false })) !== 'done') return;
       this.remember();
     } else if (!(await this.open())) return;
-    await this.play();
+    if (!this.solving) await this.play();
   }
 
   /** What people do on the canvas. */
@@ -338,7 +378,7 @@ export class Deform extends Mode {
       await this.session.aim(this.handles.targets());
       if (!this.session.finished) this.#hurry();
     } catch (error) {
-      notice('It cannot go there', describe(error));
+      this.notice('It cannot go there', describe(error));
     }
   }
 
@@ -376,11 +416,9 @@ export class Deform extends Mode {
     this.reflect();
     if (!this.whenReady(() => this.open())) return;
     this.remember();
-    if (this.records.length < 2) await this.open(this.source, { keep: true });
-    else if (!(await this.#rebuild({ fresh: key === 'method' }))) {
-      Object.assign(this.wanted, this.#good);
-      this.reflect();
-    }
+    if (this.records.length < 2 && this.handles.groups.length > 0) await this.open(this.source, { keep: true });
+    else await this.#rebuild({ fresh: true });
+    this.remember();
   }
 
   async changeSolid(solid, tetrahedra) {
@@ -393,13 +431,13 @@ export class Deform extends Mode {
   async openFiles(files) {
     if (!this.whenReady(() => this.openFiles(files))) return;
     const [file] = files;
-    this.page.busy(`Reading ${file.name}`);
+    this.busy(`Reading ${file.name}`);
     let next;
     try {
       next = await readSolidFiles(files);
     } catch (error) {
-      this.page.busy('');
-      return notice(`${file.name} was not opened`, describe(error));
+      this.busy('');
+      return this.notice(`${file.name} was not opened`, describe(error));
     }
     const before = this.wanted.preset;
     this.wanted.preset = 'held';
@@ -456,6 +494,3 @@ export class Deform extends Mode {
     if (method && METHODS[method]) this.change('method', method);
   }
 }
-
-const matches = (a, b) => a !== undefined && b !== undefined && a.length === b.length && a.every((x, i) => x === b[i]);
-

@@ -3,7 +3,7 @@ import { DEFAULTS, isDefault, readAddress, writeAddress } from './address.js';
 import { preparedStart } from './canvas.js';
 import { readMeshFile, save } from './files.js';
 import { Mode } from './mode.js';
-import { clearNotice, describe, notice } from './notice.js';
+import { describe } from './notice.js';
 import { Session } from './session.js';
 import { METHODS, ending, number, whole } from './words.js';
 
@@ -110,13 +110,14 @@ export class Flatten extends Mode {
   /** Solves `next` instead of what is on the bench; on failure the bench stays as it is. */
   async open(next = this.source, { busy = '' } = {}) {
     this.pause();
-    const { wanted, session, page } = this;
+    const { wanted, session } = this;
     const asked = { ...wanted };
-    if (busy) page.busy(busy);
+    let overtaken = false; // what came later says what is going on
+    if (busy) this.busy(busy);
     try {
       const { method, energy, start } = wanted;
       const opened = await session.open({ source: next, settings: { method, energy, start } });
-      if (!opened) return false;
+      if (!opened) return (overtaken = true, false);
       this.source = next;
       if (opened.surface) this.bench.surface(opened.surface);
       this.bench.begin(method, session.problem.startKind, energy);
@@ -124,19 +125,19 @@ export class Flatten extends Mode {
       this.records = session.records;
       this.show(0);
       this.#facts();
-      if (this.active) clearNotice();
+      this.clearNotice();
       this.remember();
       this.invite();
       this.#good = { ...asked };
       return true;
     } catch (error) {
       const name = next.name ?? next.sample;
-      notice(next === this.source ? `${METHODS[wanted.method]} could not start` : `${name} was not opened`, describe(error));
+      this.notice(next === this.source ? `${METHODS[wanted.method]} could not start` : `${name} was not opened`, describe(error));
       Object.assign(wanted, this.#good);
       if (this.records.length) this.show(this.shown, { quietly: true });
       return false;
     } finally {
-      page.busy('');
+      if (!overtaken) this.busy('');
       this.reflect();
     }
   }
@@ -172,13 +173,13 @@ export class Flatten extends Mode {
   async openFiles(files) {
     if (!this.whenReady(() => this.openFiles(files))) return;
     const [file] = files;
-    this.page.busy(`Reading ${file.name}`);
+    this.busy(`Reading ${file.name}`);
     let next;
     try {
       next = await readMeshFile(file);
     } catch (error) {
-      this.page.busy('');
-      return notice(`${file.name} was not opened`, describe(error));
+      this.busy('');
+      return this.notice(`${file.name} was not opened`, describe(error));
     }
     if (this.wanted.start === 'random' || this.wanted.start === 'collapsed') this.wanted.start = 'automatic';
     await this.open(next, { busy: `Reading ${file.name}` });

@@ -48,13 +48,12 @@ function dress() {
 /** Another mode; what lies on the bench of this one stays there. */
 async function switchTo(name) {
   if (page.active.name === name) return;
-  page.active.pause();
+  page.active.leave();
   page.active = modes[name];
   const { active } = page;
-  setBusy('');
   clearNotice();
   dress();
-  active.setPlaying(false);
+  active.enter();
   active.remember();
   $('invite').hidden = true;
   if (active.records.length) {
@@ -62,9 +61,11 @@ async function switchTo(name) {
     active.invite();
   } else {
     drawStatus(active);
-    await enter();
   }
+  if (!active.session?.ready) await enter();
 }
+
+const arriving = {}; // the modes' first problems, while they are put on their benches
 
 /** Puts the active mode's first problem on its bench. */
 async function enter() {
@@ -72,9 +73,10 @@ async function enter() {
   const drawn = page.canvas ? await active.prepare() : false;
   document.body.dataset.drawn = drawn ? 'prepared' : 'empty';
   if (!page.foldfree) return drawn;
-  if (!drawn) setBusy('Preparing the problem');
-  const opened = await active.arrive(page.foldfree);
-  setBusy('');
+  active.busy(drawn ? '' : 'Preparing the problem');
+  arriving[active.name] ??= active.arrive(page.foldfree).finally(() => { arriving[active.name] = undefined; });
+  const opened = await arriving[active.name];
+  active.busy('');
   return opened || drawn;
 }
 

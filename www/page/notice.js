@@ -11,11 +11,12 @@ export function notice(title, text = '', { plain = false } = {}) {
   element('notice-text').textContent = text;
   box.classList.toggle('plain', plain);
   box.hidden = false;
-  if (plain) hide = setTimeout(clearNotice, 5000);
+  if (plain) hide = setTimeout(() => clearNotice(), 5000);
 }
 
-/** Takes the message away. */
-export function clearNotice() {
+/** Takes the message away, or only that of a `title`. */
+export function clearNotice(title) {
+  if (title !== undefined && element('notice-title').textContent !== title) return;
   element('notice').hidden = true;
 }
 
@@ -27,4 +28,4 @@ export function describe(error) {
   return sentence.charAt(0).toUpperCase() + sentence.slice(1) + (/[.!?]$/.test(sentence) ? '' : '.');
 }
 
-element('notice-close').addEventListener('click', clearNotice);
+element('notice-close').addEventListener('click', () => clearNotice());
