@@ -33,7 +33,7 @@ export class Deform extends Mode {
   #moved = 0; // iterations the motion of the scene has made
   #ticks = []; // when iterations came, for their rate
   #controls = new DeformControls(this);
-  #turn = 0; // what was asked of the solver last; anything older is overtaken
+  #opening; // what is being opened, and how
   #held = []; // the handles the solver knows
 
   constructor(page) {
@@ -91,8 +91,9 @@ export class Deform extends Mode {
     this.pause();
     const { session } = this;
     const asked = { ...this.wanted };
-    const turn = ++this.#turn;
-    const overtaken = () => turn !== this.#turn;
+    const mine = { next, busy, keep };
+    this.#opening = mine;
+    const overtaken = () => this.#opening !== mine;
     if (busy) this.busy(busy);
     let solid;
     const same = session.solid !== undefined && session.problem?.source === next;
@@ -130,6 +131,7 @@ export class Deform extends Mode {
       return false;
     } finally {
       if (!overtaken()) {
+        this.#opening = undefined;
         this.busy('');
         this.reflect();
       }
@@ -167,9 +169,9 @@ export class Deform extends Mode {
    * `suspended` while nothing is held.
    */
   async #rebuild({ fresh = false, start = (positions) => positions, go = true } = {}) {
+    if (this.#opening) return (await this.open(this.#opening.next, this.#opening)) ? 'done' : 'failed';
     const { session } = this;
     const pins = this.handles.pins();
-    const turn = ++this.#turn;
     const asked = { ...this.wanted };
     this.pause();
     if (pins.length === 0) {
@@ -186,14 +188,13 @@ export class Deform extends Mode {
         source: this.source, settings: this.#settings, pins, targets: this.handles.targets(), fresh: fresh || !begun,
         start: () => this.handles.applied(start(session.positions)),
       });
-      if (!made || turn !== this.#turn) return 'overtaken';
+      if (!made) return 'overtaken';
       if (fresh || !begun) this.#begin(made, begun ? 'here' : this.wanted.preset);
       this.#facts();
       this.#settled(asked);
       if (go && begun) this.#hurry();
       return 'done';
     } catch (error) {
-      if (turn !== this.#turn) return 'overtaken';
       this.notice('The solver could not go on', describe(error));
       this.#takeBack();
       return 'failed';
@@ -306,9 +307,14 @@ export class Deform extends Mode {
     if (!this.solving) await this.play();
   }
 
+  /** Whether there is a solid with handles, and not another one on its way. */
+  get #mayHold() {
+    return this.session?.ready && this.#rest !== undefined && !this.#opening;
+  }
+
   /** What people do on the canvas. */
   listen(name, value) {
-    if (!this.session?.ready || !this.#rest) return;
+    if (!this.#mayHold) return;
     switch (name) {
       case 'pin': return void this.pin(value);
       case 'select':
@@ -346,7 +352,7 @@ export class Deform extends Mode {
 
   /** Lets the selected handle go, or all. */
   async release() {
-    if (!this.whenReady(() => this.release()) || !this.handles.release()) return;
+    if (!this.whenReady(() => this.release()) || this.#opening || !this.handles.release()) return;
     if (this.#scene) this.#scene.motion = undefined;
     this.#drawHandles();
     await this.#rebuild();
@@ -356,12 +362,12 @@ export class Deform extends Mode {
   nudge(right, up) {
     const axes = this.bench.cameraAxes(NUDGE);
     const delta = [0, 1, 2].map((k) => right * axes[k] + up * axes[3 + k]);
-    if (this.session?.ready && this.handles.move(delta)) this.#aim();
+    if (this.#mayHold && this.handles.move(delta)) this.#aim();
   }
 
   /** Turns the selected handle about the longest axis of the solid, a twelfth of a turn times `times`. */
   twist(times) {
-    if (this.session?.ready && this.#scene && this.handles.twist(this.#scene.axis, (times * Math.PI) / 6)) this.#aim();
+    if (this.#mayHold && this.handles.twist(this.#scene.axis, (times * Math.PI) / 6)) this.#aim();
   }
 
   /** Selects the next handle. */
