@@ -1,10 +1,11 @@
 // What is being deformed: one solid, one solver after the other, and the record of all their steps. No DOM here.
+import { volumeOf } from './relative.js';
 
 /** Iterations of one solver at most: a person may drag for a long time. */
 export const MOST_ITERATIONS = 100_000;
 
-/** Energies below this part of the stiffness are nothing but rounding, and told as 0. */
-const ROUNDING = 1e-14;
+/** Iterates, the newest, whose phases are kept. */
+const MOST_PHASES = 5000;
 
 /**
  * A solid on the bench. Its solver is made anew when pins or material change, from where the solid is.
@@ -20,6 +21,7 @@ export class DeformSession {
   #generation = 0; // of builds
   #building = 0; // builds that wait or are going on
   #before = { iterations: 0, seconds: 0 }; // of the solvers before this one
+  #solvers = []; // of these records: from which iteration, with which settings
   #status = 'running';
   #suspended = false;
   #targets; // the newest wish that was not sent yet
@@ -108,22 +110,24 @@ export class DeformSession {
 
   /** The solver that was made takes the place of the last. */
   #install(solver, { source, solid, settings, pins, fresh }) {
+    const same = solid === this.#solid;
     this.#solver?.free();
-    if (solid !== this.#solid) this.#solid?.free();
+    if (!same) this.#solid?.free();
     [this.#solid, this.#solver, this.#suspended, this.#aimed] = [solid, solver, false, false];
-    this.problem = {
-      source, settings, pins: pins.length, notes: [...solid.notes, ...solver.notes], setupSeconds: solver.setupSeconds,
-    };
+    const { setupSeconds } = solver;
+    const volume = same ? this.problem.volume : volumeOf(solid.positions, solid.tetrahedra);
+    this.problem = { source, settings, volume, pins: pins.length, notes: [...solid.notes, ...solver.notes], setupSeconds };
     this.certificate = undefined;
-    this.#calm(solver.start);
     this.#status = solver.start.status;
     this.positions = solver.start.positions;
     if (fresh) {
       this.#before = { iterations: 0, seconds: 0 };
       this.records = [numbersOf(solver.start)];
+      this.#solvers = [];
     } else {
       this.#before = { iterations: this.newest.iteration, seconds: this.newest.seconds };
     }
+    this.#solvers.push({ from: this.#before.iterations, settings, pins: pins.length, setupSeconds });
   }
 
   /** One step; resolves with it, or with undefined when there is none to make. */
@@ -218,21 +222,18 @@ export class DeformSession {
     }
   }
 
-  #calm(step) {
-    if (Math.abs(step.energy) < ROUNDING * (this.problem.settings.young ?? 1)) step.energy = 0;
-  }
-
   /** Keeps a step's numbers, counted on from the solvers before. */
   #record(step) {
     const milliseconds = (step.phases ?? []).reduce((sum, phase) => sum + phase.milliseconds, 0);
     // Seconds of solving: the solver's own clock also runs while it waits for the next step.
     step.seconds = (this.newest?.seconds ?? 0) + milliseconds / 1000;
     step.iteration += this.#before.iterations;
-    this.#calm(step);
     // Targets may have come after the solver had ended and before this was heard of: it has to look once more.
     this.#status = step.status === 'cancelled' || this.#aimed ? 'running' : step.status;
     const numbers = numbersOf(step);
     this.records.push(numbers);
+    const old = this.records[this.records.length - 1 - MOST_PHASES];
+    if (old) old.phases = [];
     return numbers;
   }
 
@@ -250,13 +251,13 @@ export class DeformSession {
 
   /** Everything a person would want to plot elsewhere. */
   async trace() {
-    const { source, settings, setupSeconds, notes, pins } = this.problem;
+    const { source, settings, setupSeconds, notes, pins, volume } = this.problem;
     const certificate = this.certificate ?? (await this.#solver.result()).certificate;
     return {
       format: 'foldfree-trace', formatVersion: 1, foldfree: this.#foldfree.version,
       problem: source.bytes ? { file: source.name } : { solid: source.solid, tetrahedra: source.tetrahedra },
       settings: { ...settings, maxIterations: MOST_ITERATIONS }, pins, notes, threads: this.#foldfree.threads,
-      setupSeconds, iterations: this.records, certificate,
+      setupSeconds, volume, solvers: this.#solvers, iterations: this.records, certificate,
     };
   }
 }

@@ -13,6 +13,7 @@ const DIRECT = ['lscm', 'harmonic', 'tutte'];
 export class Flatten extends Mode {
   static accepts = '.obj,.off,.ply,.stl,.mesh,.msh,.vtk,.gz';
   static dropHere = 'Drop a surface to flatten it: OBJ, OFF, PLY, STL, MESH, MSH or VTK';
+  static label = 'A surface in 3D, its flat map, the convergence plot and what the step did';
   static first = 'map'; // the view a phone shows
   static views = { map: 'Map', shape: 'Surface', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('flatten'); // what the controls say
@@ -146,8 +147,8 @@ export class Flatten extends Mode {
   remember(extra = {}) {
     if (!this.active) return;
     const { wanted, source } = this;
-    if (source.bytes) writeAddress('flatten', {});
-    else writeAddress('flatten', { ...wanted, steps: undefined, sample: source.sample, triangles: source.triangles, ...extra });
+    const sample = source.bytes ? { sample: undefined, triangles: undefined } : { sample: source.sample, triangles: source.triangles };
+    writeAddress('flatten', { ...wanted, steps: undefined, ...sample, ...(!source.bytes && extra) });
   }
 
   async reset() {

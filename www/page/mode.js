@@ -78,6 +78,11 @@ export class Mode {
     else if (!options.plain) this.#unsaid = [title, text, options];
   }
 
+  /** Says something to people who listen instead of looking. */
+  say(text) {
+    if (this.active) speak(text, { now: true });
+  }
+
   /** Takes a message away: any, or that of a `title`. */
   clearNotice(title) {
     if (this.active) clearNotice(title);
@@ -88,6 +93,8 @@ export class Mode {
 
   /** The one obvious button: `{ button, text }`, or nothing. */
   invitation() {}
+  /** The numbers of an iterate as people read them. */
+  readout(record) { return record; }
   /** Hands a step to the canvas. */
   push(step) { this.bench.push(step); }
   /** Before a step is made: moves what moves by itself. */
@@ -106,7 +113,7 @@ export class Mode {
     this.bench?.show(this.shown);
     if (!this.active) return;
     drawStatus(this);
-    if (!quietly) speak(spoken(this.records[this.shown]), { now: !this.playing });
+    if (!quietly) speak(spoken(this.readout(this.records[this.shown])), { now: !this.playing });
   }
 
   /** Shows the newest iterate with the next frame, however many come until then. */
@@ -147,7 +154,7 @@ export class Mode {
     this.setPlaying(false);
     if (this.records[this.shown] && this.active) {
       drawStatus(this);
-      speak(spoken(this.records[this.shown]), { now: true });
+      speak(spoken(this.readout(this.records[this.shown])), { now: true });
     }
   }
 
