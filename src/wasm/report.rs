@@ -4,7 +4,8 @@ use crate::optim::{self, Criterion, Phase, Status};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// What one step did. Energies are relative to an isometry: symmetric Dirichlet has 1, ARAP 0.
+/// What one step did. The energy of a map is relative, its surface scaled to unit area; that of a solid is in the unit of
+/// its moduli times volume.
 #[derive(Debug, Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct StepReport<'a> {
@@ -21,13 +22,13 @@ pub struct StepReport<'a> {
     pub converged: bool,
     /// The energy of the iterate; while elements are inverted, of the local variables.
     pub energy: f64,
-    /// Number of inverted or degenerate triangles.
+    /// Number of inverted or degenerate elements.
     pub inverted: u32,
     /// Norm of the energy's gradient (infinite while inverted).
     pub gradient_norm: f64,
-    /// Smallest signed singular value of any triangle.
+    /// Smallest signed singular value of any element.
     pub smallest_sigma: f64,
-    /// Largest singular value of any triangle.
+    /// Largest singular value of any element.
     pub largest_sigma: f64,
     /// L-BFGS iterations of the global step.
     pub lbfgs_iterations: u32,

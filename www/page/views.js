@@ -43,7 +43,7 @@ function arrange() {
   const column = wide && !narrow.matches && !projecting() ? 292 : 0;
   box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${deforming ? 0.25 : 0.75})`);
   // The plot below the views has at most 250 points (layout.rs).
-  const low = narrow.matches ? 'calc(100% - 66px)' : 'calc(100% - clamp(130px, 30%, 250px) - 74px)';
+  const low = narrow.matches ? 'calc(100% - 86px)' : 'calc(100% - clamp(130px, 30%, 250px) - 74px)';
   box.setProperty('--invite-y', deforming ? low : narrow.matches ? '50%' : '34%');
 }
 

@@ -292,7 +292,7 @@ impl Column<'_> {
         let (name, hint) = if self.bench.body.is_some() {
             (
                 "gradient (relative)",
-                "Length of the gradient of the energy: all forces that are left, over Young’s modulus (where there is one) times the area of a cube as large as the solid.",
+                "Length of the gradient of the energy: all forces that are left, over Young’s modulus (where there is one) times the area of one face of a cube as large as the solid.",
             )
         } else {
             ("gradient", "Length of the gradient of the energy.")

@@ -29,8 +29,8 @@ struct Frame {
     stretch: Option<f64>,
 }
 
-/// The ends an axis of stretches may have.
-const STRETCH_ENDS: [f64; 6] = [1.1, 1.5, 2.0, 4.0, 10.0, 100.0];
+/// The ends an axis of stretches may have; their square roots are round, too.
+const STRETCH_ENDS: [f64; 7] = [1.21, 1.44, 2.25, 4.0, 9.0, 25.0, 100.0];
 
 impl Frame {
     fn x(&self, record: &Record) -> f32 {
@@ -279,9 +279,10 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
         let worst = records.iter().map(Record::worst_distortion);
         if bench.body.is_some() {
             // Next to energies of many decades a stretch between 1 and 2 would be a flat line.
-            let most = worst.filter(|v| v.is_finite()).fold(1.0, f64::max);
-            let end = STRETCH_ENDS.into_iter().find(|end| *end >= most);
-            frame.stretch = Some(end.unwrap_or(STRETCH_ENDS[STRETCH_ENDS.len() - 1]));
+            let most = worst.filter(|v| v.is_finite()).reduce(f64::max);
+            let end = |most| STRETCH_ENDS.into_iter().find(|end| *end >= most);
+            frame.stretch =
+                most.map(|most| end(most).unwrap_or(STRETCH_ENDS[STRETCH_ENDS.len() - 1]));
         } else {
             values.extend(worst);
         }

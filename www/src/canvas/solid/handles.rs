@@ -181,18 +181,15 @@ pub fn plane_outline(painter: &Painter, rect: Rect, lens: &Lens, bench: &Bench, 
     ];
     let stroke = Stroke::new(1.0, style::colour(bench.theme.quiet).gamma_multiply(0.8));
     painter.extend(Shape::dashed_line(&corners, stroke, 4.0, 4.0));
-    // Its name stands at the corner that is furthest to the right, turned inwards where the view ends.
-    let Some(corner) = corners.into_iter().max_by(|a, b| a.x.total_cmp(&b.x)) else {
+    // Its name stands under the corner furthest to the left, which sticks out of the solid.
+    let Some(corner) = corners.into_iter().min_by(|a, b| a.x.total_cmp(&b.x)) else {
         return;
     };
     let name = ["cut across x", "cut across y", "cut across z"][cut.axis.min(2)];
-    let below = if corner.y > rect.center().y {
-        1.0
-    } else {
-        -1.0
-    };
-    let at = corner + vec2(0.0, 10.0 * below);
-    let end = (at.x + 4.0).clamp(rect.left() + 90.0, rect.right() - 8.0);
-    let at = egui::pos2(end, at.y.clamp(rect.top() + 34.0, rect.bottom() - 34.0));
-    style::label(painter, bench, at, egui::Align2::RIGHT_CENTER, name, true);
+    let (x, y) = (corner.x - 6.0, corner.y + 12.0);
+    let at = egui::pos2(
+        x.clamp(rect.left() + 14.0, rect.right() - 90.0),
+        y.clamp(rect.top() + 34.0, rect.bottom() - 34.0),
+    );
+    style::label(painter, bench, at, egui::Align2::LEFT_TOP, name, true);
 }
