@@ -34,6 +34,7 @@ export class Deform extends Mode {
   #rest; // positions at rest
   #scene; // where things start
   #motion = new Motion(); // what moves by itself
+  #movedAt; // the iteration after which it moved last
   #relative = (step) => step; // a step without units
   #rate = new Rate();
   #opening; // what is being opened, and how
@@ -133,6 +134,7 @@ export class Deform extends Mode {
       if (!start) return false;
       this.source = next;
       [this.#scene, this.#motion, this.#rest] = [made, new Motion(made.motion), solid.positions];
+      this.#movedAt = undefined;
       if (!same) this.bench.solid({ positions: solid.positions, tetrahedra: solid.tetrahedra, surface: solid.surface });
       this.hands.take(handles);
       this.#look();
@@ -242,7 +244,10 @@ export class Deform extends Mode {
 
   /** The scene's motion goes on. */
   async beforeStep({ freely = false } = {}) {
-    if (!this.restless) return;
+    const { iteration } = this.session.newest;
+    // What is held and what is inside move by turns.
+    if (!this.restless || iteration === this.#movedAt) return;
+    this.#movedAt = iteration;
     const group = this.handles.groups[this.#motion.handle];
     group.at = this.#motion.advance({ freely });
     this.hands.drawTargets();

@@ -1,7 +1,7 @@
 // How the handle of a scene moves by itself. No DOM here.
 
 /** Part of a motion one turn of a free run makes at most, so that what is inside can follow on a slow machine. */
-const MOST_AT_ONCE = 1 / 8;
+const MOST_AT_ONCE = 1 / 10;
 
 /** A motion on its way: by the clock while the solver runs freely, else by so much an iteration. */
 export class Motion {

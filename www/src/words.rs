@@ -179,10 +179,9 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
 pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
     if solid {
         match energy {
-            "symmetric-dirichlet" => "energy ÷ volume (undeformed: 2)",
-            "dirichlet" => "energy ÷ volume (undeformed: 1.5)",
-            "arap" => "energy ÷ volume (undeformed: 0)",
-            _ => "energy ÷ (Young × volume), undeformed: 0",
+            "symmetric-dirichlet" => "relative energy (undeformed: 2)",
+            "dirichlet" => "relative energy (undeformed: 1.5)",
+            _ => "relative energy (undeformed: 0)",
         }
     } else if energy == "arap" {
         "energy (isometry: 0)"

@@ -311,7 +311,7 @@ fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
         }
     }
     if let Some(end) = frame.stretch {
-        let middle = number(end.sqrt(), 3);
+        let middle = format!("{}", (100.0 * end.sqrt()).round() / 100.0);
         for (value, name) in [(1.0, "1"), (end.sqrt(), &middle), (end, &format!("{end}"))] {
             if let Some(y) = frame.worst(value) {
                 painter.line_segment(
