@@ -11,7 +11,9 @@ function later() {
 }
 
 const turn = () => new Promise((done) => { setTimeout(done, 0); });
-const solid = (name = 'bar') => ({ name, notes: [], freed: 0, free() { this.freed += 1; } });
+const solid = (name = 'bar') => ({
+  name, notes: [], positions: new Float64Array(12), tetrahedra: Uint32Array.of(0, 1, 2, 3), freed: 0, free() { this.freed += 1; },
+});
 const step = (iteration, status = 'running') => ({
   iteration, status, energy: 1, inverted: 0, gradientNorm: 1, smallestSigma: 1, largestSigma: 1, phases: [], seconds: 0,
   positions: Float32Array.of(iteration, 0, 0),
@@ -233,5 +235,7 @@ describe('running', () => {
     made.steps[0].resolve({ ...step(1), phases: [{ milliseconds: 250 }] });
     await single;
     assert.deepEqual(session.records.map(({ iteration, seconds }) => [iteration, seconds]), [[0, 0], [1, 0.5], [2, 0.75]]);
+    const { solvers } = await session.trace();
+    assert.deepEqual(solvers.map(({ from }) => from), [0, 1], 'a trace says which solver made which iterates');
   });
 });
