@@ -4,8 +4,8 @@ use crate::optim::{self, Criterion, Phase, Status};
 use serde::Serialize;
 use tsify::Tsify;
 
-/// What one step did. Energies are relative to an isometry, which has 1 of symmetric Dirichlet, 0 of
-/// others (of Dirichlet: what is collapsed to a point).
+/// What one step did. The energy of a map is relative to an isometry (1 of symmetric Dirichlet, 0 of the
+/// others), its surface scaled to unit area; that of a solid is in the unit of its moduli times volume.
 #[derive(Debug, Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct StepReport<'a> {

@@ -1,4 +1,5 @@
 // The state of the page in the address, so that a link opens the same bench.
+import { MATERIALS } from './materials.js';
 
 /** The modes, the first of which the page opens on. */
 export const MODES = ['flatten', 'deform'];
@@ -23,7 +24,7 @@ const CHOICES = {
   deform: {
     preset: ['held', 'squash', 'twist', 'random', 'collapse'],
     method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
-    material: ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff', 'arap', 'symmetric-dirichlet', 'dirichlet'],
+    material: Object.keys(MATERIALS),
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
   },
@@ -59,9 +60,12 @@ export function readAddress(mode = modeOf(), search = location.search) {
     if (value >= low && value <= high) state[key] = whole ? Math.round(value) : value;
   }
   const steps = Number(asked.get(STEPS[mode]));
-  if (steps > 0 && steps <= 5000) state.steps = Math.round(steps);
+  if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);
   return state;
 }
+
+/** Steps an address may ask for at most. */
+export const MOST_STEPS = 5000;
 
 /** How the address says how many steps to make. */
 const STEPS = { flatten: 'at', deform: 'steps' };

@@ -119,6 +119,8 @@ class BenchBoard {
     this.handle.setTargets(vertices, positions);
   }
 
+  /** The vertex that keys would pin, or nothing. */
+  cursor(vertex) { this.handle.setCursor(vertex ?? 0xffff_ffff); }
   show(index) { this.handle.showFrame(index); }
   facts(pairs) { this.handle.setFacts(pairs.flat()); }
   field(name) { this.handle.setField(name); }

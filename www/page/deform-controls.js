@@ -1,11 +1,9 @@
 // The controls of the Deform mode.
+import { MATERIALS, isElastic } from './materials.js';
 import { PRESETS } from './presets.js';
 import { number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
-
-/** Materials without moduli: Young and Poisson say nothing of them. */
-const PLAIN = ['arap', 'symmetric-dirichlet', 'dirichlet'];
 
 export class DeformControls {
   #mode;
@@ -39,6 +37,7 @@ export class DeformControls {
     $('deform-method').addEventListener('change', () => mode.change('method', $('deform-method').value));
     $('material').addEventListener('change', () => mode.change('material', $('material').value));
     for (const id of ['young', 'poisson']) $(id).addEventListener('change', () => this.#changeNumber(id));
+    $('material').replaceChildren(...Object.entries(MATERIALS).map(([name, { title }]) => new Option(title, name)));
     for (const [name, { title, hint }] of Object.entries(PRESETS)) {
       const button = Object.assign(document.createElement('button'), { type: 'button', textContent: title, title: hint });
       button.dataset.preset = name;
@@ -47,9 +46,12 @@ export class DeformControls {
     }
     $('field').addEventListener('change', () => mode.look('field', $('field').value));
     $('cut').addEventListener('change', () => mode.look('cut', $('cut').value));
-    $('cut-at').addEventListener('input', () => mode.look('at', Number($('cut-at').value) / 100));
+    const at = () => Number($('cut-at').value) / 100;
+    $('cut-at').addEventListener('input', () => mode.look('at', at(), { moving: true }));
+    $('cut-at').addEventListener('change', () => mode.look('at', at()));
     $('pin-box').addEventListener('click', () => this.toggleBox());
     $('release').addEventListener('click', () => mode.release());
+    for (const [id, times] of [['turn-back', -1], ['turn-on', 1]]) $(id).addEventListener('click', () => mode.hands.twist(times));
   }
 
   /** Young's modulus or Poisson's ratio, if it is a number in range; else the field says what is wrong. */
@@ -79,7 +81,7 @@ export class DeformControls {
     $('young').value = number(wanted.young, 3).replace('.00', '');
     $('poisson').value = String(wanted.poisson);
     for (const id of ['young', 'poisson']) {
-      $(id).disabled = PLAIN.includes(wanted.material);
+      $(id).disabled = !isElastic(wanted.material);
       $(id).setCustomValidity('');
     }
     const solid = $('solid');
@@ -106,6 +108,7 @@ export class DeformControls {
   reflectHandles() {
     const { groups, selected } = this.#mode.handles;
     $('release').disabled = groups.length === 0;
+    for (const id of ['turn-back', 'turn-on']) $(id).disabled = selected < 0;
     $('release').textContent = groups.length > 0 && selected < 0 ? 'Release all' : 'Release';
   }
 

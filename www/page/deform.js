@@ -2,34 +2,42 @@
 import { isDefault, readAddress, writeAddress } from './address.js';
 import { preparedSolid } from './canvas.js';
 import { DeformControls } from './deform-controls.js';
+import { factsOf } from './deform-facts.js';
+import { Hands } from './deform-hands.js';
 import { DeformSession } from './deform-session.js';
-import { medit, readSolidFiles, save } from './files.js';
+import { readSolidFiles, save } from './files.js';
 import { Handles } from './handles.js';
+import { isElastic } from './materials.js';
 import { Mode, nextFrame } from './mode.js';
-import { clearNotice, describe, notice } from './notice.js';
+import { Motion } from './motion.js';
+import { describe } from './notice.js';
 import { PRESETS, collapsed, scattered, scene } from './presets.js';
-import { METHODS, ending, number, whole } from './words.js';
+import { Rate } from './rate.js';
+import { relativeTo, volumeOf } from './relative.js';
+import { METHODS, whole } from './words.js';
 
-/** How far a key moves a handle, in radii of the solid. */
-const NUDGE = 0.04;
-
-/** Materials that have moduli. */
-const ELASTIC = ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff'];
+/** Title of a notice. */
+const NOTHING_HELD = 'Nothing is held';
 
 export class Deform extends Mode {
   static accepts = '.mesh,.msh,.vtk,.node,.ele,.gz';
   static dropHere = 'Drop a MESH, MSH or VTK file, or a NODE file with its ELE file, to deform it';
+  static label = 'An elastic solid in 3D with its handles, the solid cut open, the convergence plot and what the step did. Keys select, move, turn, pin and release handles; the help lists them';
   static first = 'shape'; // the view a phone shows
   static views = { map: 'Cut', shape: 'Solid', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('deform');
   source = { solid: this.wanted.solid, tetrahedra: this.wanted.tetrahedra };
-  handles = new Handles();
+  controls = new DeformControls(this);
+  hands = new Hands(this);
   #good = { ...this.wanted };
+  #held = []; // the handles the solver knows
   #rest; // positions at rest
-  #scene; // where things start, and what moves by itself
-  #moved = 0; // iterations the motion of the scene has made
-  #ticks = []; // when iterations came, for their rate
-  #controls = new DeformControls(this);
+  #scene; // where things start
+  #motion = new Motion(); // what moves by itself
+  #movedAt; // the iteration after which it moved last
+  #relative = (step) => step; // a step without units
+  #rate = new Rate();
+  #opening; // what is being opened, and how
 
   constructor(page) {
     super(page, 'deform');
@@ -42,14 +50,14 @@ export class Deform extends Mode {
     const drawn = await preparedSolid().catch(() => undefined);
     if (!drawn || this.records.length) return this.records.length > 0;
     const { method, preset, material } = this.wanted;
+    this.#relative = relativeTo(this.#stiffness, volumeOf(drawn.positions, drawn.tetrahedra));
     this.bench.solid(drawn);
     this.#look();
     this.bench.begin(method, preset, material);
-    this.bench.push(drawn.start);
-    this.handles = new Handles();
-    for (const vertices of scene(preset, Float64Array.from(drawn.positions)).held) this.handles.add(vertices, drawn.start.positions);
-    this.handles.selected = -1;
-    this.#drawHandles();
+    this.push(drawn.start);
+    const handles = new Handles();
+    for (const vertices of scene(preset, Float64Array.from(drawn.positions)).held) handles.add(vertices, drawn.start.positions);
+    this.hands.take(handles);
     this.records = [drawn.start];
     this.show(0);
     this.invite();
@@ -58,7 +66,7 @@ export class Deform extends Mode {
 
   async arrive(foldfree) {
     this.session ??= new DeformSession(foldfree);
-    this.#controls.list(foldfree.solidShapes);
+    this.controls.list(foldfree.solidShapes);
     if (this.session.ready) return true;
     const opened = await this.open(this.source);
     if (opened && this.waiting) await this.catchUp();
@@ -76,172 +84,249 @@ export class Deform extends Mode {
     return start.inverted > 0 ? { button: 'Untangle', text: `${wrong}.` } : undefined;
   }
 
+  get handles() {
+    return this.hands.handles;
+  }
+
+  /** The coordinate axis handles are turned about. */
+  get axis() {
+    return this.#scene?.axis ?? 0;
+  }
+
+  /** Whether there is a solid with handles, and not another one on its way. */
+  get mayHold() {
+    return this.session?.ready === true && this.#rest !== undefined && !this.#opening;
+  }
+
   get #settings() {
     const { method, material, young, poisson } = this.wanted;
-    return { method, energy: material, ...(ELASTIC.includes(material) && { young, poisson }) };
+    return { method, energy: material, ...(isElastic(material) && { young, poisson }) };
+  }
+
+  get #stiffness() {
+    return this.#settings.young ?? 1;
   }
 
   /** Puts `next` on the bench in the scene of the preset; on failure the bench stays as it is. */
   async open(next = this.source, { busy = '', keep = false } = {}) {
     this.pause();
-    const { session, page } = this;
+    const { session } = this;
     const asked = { ...this.wanted };
-    if (busy) page.busy(busy);
+    const mine = { next, busy, keep };
+    this.#opening = mine;
+    const overtaken = () => this.#opening !== mine;
+    if (busy) this.busy(busy);
     let solid;
     const same = session.solid !== undefined && session.problem?.source === next;
     try {
       solid = same ? session.solid : await session.read(next);
-      const made = scene(asked.preset, solid.positions);
+      if (overtaken()) {
+        if (!same) solid.free();
+        return false;
+      }
+      const made = scene(asked.preset, solid.positions, keep ? this.handles.groups.map(({ vertices }) => vertices) : undefined);
       const handles = new Handles();
-      if (keep) for (const { vertices } of this.handles.groups) handles.add(vertices, made.start);
-      else for (const vertices of made.held) handles.add(vertices, made.start);
-      handles.selected = -1;
+      for (const vertices of made.held) handles.add(vertices, made.start);
+      // From here on the solid is the session's, except when it fails.
       const start = await session.build({
-        source: next, solid, settings: this.#settings, pins: handles.pins(), start: made.start, fresh: true,
+        source: next, solid, settings: this.#settings, pins: handles.pins(), start: () => made.start, fresh: true,
       });
       if (!start) return false;
       this.source = next;
-      [this.handles, this.#scene, this.#rest, this.#moved] = [handles, made, solid.positions, 0];
-      if (keep && made.motion && !matches(handles.groups[1]?.vertices, made.held[1])) this.#scene.motion = undefined;
+      [this.#scene, this.#motion, this.#rest] = [made, new Motion(made.motion), solid.positions];
+      this.#movedAt = undefined;
       if (!same) this.bench.solid({ positions: solid.positions, tetrahedra: solid.tetrahedra, surface: solid.surface });
+      this.hands.take(handles);
       this.#look();
       this.#begin(start, asked.preset);
       this.remember();
-      if (this.active) clearNotice();
-      this.#good = asked;
+      this.clearNotice();
+      this.#settled(asked);
       return true;
     } catch (error) {
+      if (overtaken()) return false;
       if (!same) solid?.free();
       const name = next.name ?? next.solid;
-      notice(next === this.source && session.ready ? 'The solver could not start' : `${name} was not opened`, describe(error));
-      Object.assign(this.wanted, this.#good);
+      this.notice(next === this.source && session.ready ? 'The solver could not start' : `${name} was not opened`, describe(error));
+      this.#takeBack();
       if (this.records.length) this.show(this.shown, { quietly: true });
       return false;
     } finally {
-      page.busy('');
-      this.reflect();
+      if (!overtaken()) {
+        this.#opening = undefined;
+        this.busy('');
+        this.reflect();
+      }
     }
+  }
+
+  /** What the controls say, and what is held, is what the solver has. */
+  #settled(wanted) {
+    this.#good = wanted;
+    this.#held = [...this.handles.groups];
+  }
+
+  /** The controls and the handles go back to what the solver has. */
+  #takeBack() {
+    Object.assign(this.wanted, this.#good);
+    this.handles.keepOnly(this.#held);
+    this.hands.draw();
+    this.reflect();
   }
 
   /** A run begins on the canvas. */
   #begin(start, name) {
+    this.#relative = relativeTo(this.#stiffness, this.session.problem.volume);
     this.bench.begin(this.wanted.method, name, this.wanted.material);
     this.push(start);
     this.records = this.session.records;
-    this.#drawHandles();
+    this.hands.draw();
     this.show(0);
     this.#facts();
     this.invite();
   }
 
-  /** A new solver from where the solid is now, for other pins, another material or another method. */
-  async #rebuild({ fresh = false, start = this.session.positions, go = true } = {}) {
+  /**
+   * A new solver from where the solid is now, for other pins, another material or another method; says how that ended:
+   * `done`, `failed` (controls and handles are back at what they were), `overtaken` by something asked for later, or
+   * `suspended` while nothing is held.
+   */
+  async rebuild({ fresh = false, start = (positions) => positions, go = true } = {}) {
+    if (this.#opening) return (await this.open(this.#opening.next, this.#opening)) ? 'done' : 'failed';
+    const { session } = this;
     const pins = this.handles.pins();
+    const asked = { ...this.wanted };
+    this.pause();
     if (pins.length === 0) {
-      this.pause();
-      this.session.suspend();
-      notice('Nothing is held', 'Pin something before it can go on: click a vertex, or drag a box around some with Shift.', { plain: true });
-      return false;
+      session.suspend();
+      this.#tellNothingIsHeld();
+      this.#settled(asked);
+      return 'suspended';
     }
+    this.clearNotice(NOTHING_HELD);
     // Pins that were released or added have to be known before anything moves.
     const begun = this.records.length > 1;
-    this.pause();
     try {
-      const made = await this.session.build({
-        source: this.source, settings: this.#settings, pins, start: this.handles.applied(start), targets: this.handles.targets(),
-        fresh: fresh || !begun,
+      const made = await session.build({
+        source: this.source, settings: this.#settings, pins, targets: this.handles.targets(), fresh: fresh || !begun,
+        start: () => this.handles.applied(start(session.positions)),
       });
-      if (!made) return false;
+      if (!made) return 'overtaken';
       if (fresh || !begun) this.#begin(made, begun ? 'here' : this.wanted.preset);
       this.#facts();
-      this.#good = { ...this.wanted };
-      if (go && begun) this.#hurry();
-      return true;
+      this.#settled(asked);
+      if (go && begun) this.hurry();
+      return 'done';
     } catch (error) {
-      notice('The solver could not go on', describe(error));
-      return false;
+      this.notice('The solver could not go on', describe(error));
+      this.#takeBack();
+      return 'failed';
     }
   }
 
-  push(step) {
-    const { energy, young } = this.#settings;
-    const unit = young ?? 1;
-    this.bench.pushSolid(step, ELASTIC.includes(energy) && step.field ? step.field.map((x) => x / unit) : step.field);
+  #tellNothingIsHeld() {
+    this.notice(NOTHING_HELD, 'Pin something before it can go on: click a vertex, or drag a box around some with Shift.');
   }
 
   // ——— playing ———
 
-  get restless() {
-    const { motion } = this.#scene ?? {};
-    return motion !== undefined && this.#moved < motion.steps && this.handles.groups[motion.handle] !== undefined;
+  readout(record) {
+    return this.#relative(record);
   }
 
-  /** The scene's motion, one iteration on. */
-  async beforeStep() {
-    if (!this.restless) return;
-    const { motion } = this.#scene;
-    this.#moved += 1;
-    this.handles.groups[motion.handle].at = motion.at(this.#moved);
-    this.#drawTargets();
+  push(step) {
+    this.bench.pushSolid(this.#relative(step));
+  }
+
+  get restless() {
+    return this.handles.groups[this.#motion.handle] !== undefined;
+  }
+
+  /** The scene's motion goes on. */
+  async beforeStep({ freely = false } = {}) {
+    const { iteration } = this.session.newest;
+    // What is held and what is inside move by turns.
+    if (!this.restless || iteration === this.#movedAt) return;
+    this.#movedAt = iteration;
+    const group = this.handles.groups[this.#motion.handle];
+    group.at = this.#motion.advance({ freely });
+    this.hands.drawTargets();
     await this.session.aim(this.handles.targets());
+  }
+
+  /** The motion ends, if it is that of a handle; or any. */
+  endMotion(handle = this.#motion.handle) {
+    if (handle === this.#motion.handle) this.#motion.end();
   }
 
   async runFreely(mayGo) {
     try {
-      await this.beforeStep();
+      await this.beforeStep({ freely: true });
       if (!mayGo()) return false;
       await this.session.run(async (step, skipped) => {
-        skipped.forEach((record) => this.bench.pushNumbers(record));
-        this.#tick(skipped.length);
+        skipped.forEach((record) => this.bench.pushNumbers(this.#relative(record)));
+        this.#rate.tick(skipped.length);
         this.took(step);
-        // One step of the motion a frame: what is inside has time to follow what is held.
-        await Promise.all([this.beforeStep(), nextFrame()]);
+        // The motion goes on once a frame: what is inside has time to follow what is held.
+        await Promise.all([mayGo() && this.beforeStep({ freely: true }), nextFrame()]);
         if (!mayGo()) this.session.stop();
       });
       // A target that moved while the last step was being made keeps it going.
       await nextFrame();
       return !this.session.finished || this.restless;
     } catch (error) {
-      notice('The solver stopped', describe(error));
+      this.notice('The solver stopped', describe(error));
       return false;
     }
   }
 
   took(step) {
     if (this.records !== this.session.records) this.records = this.session.records;
-    this.#tick(1);
+    this.#rate.tick();
     super.took(step);
   }
 
-  #tick(count) {
-    const now = performance.now();
-    this.#ticks.push([now, count]);
-    while (this.#ticks.length > 2 && this.#ticks[0][0] < now - 1000) this.#ticks.shift();
-  }
-
-  /** Iterations a second, lately. */
   get rate() {
-    if (this.#ticks.length < 3) return undefined;
-    const [first] = this.#ticks[0];
-    const [last] = this.#ticks.at(-1);
-    const count = this.#ticks.slice(1).reduce((sum, [, n]) => sum + n, 0);
-    return last - first > 100 ? (1000 * count) / (last - first) : undefined;
+    return this.#rate.perSecond;
   }
 
   pause() {
     super.pause();
-    this.#ticks = [];
+    this.#rate.clear();
+    this.#motion.pause();
+  }
+
+  leave() {
+    void this.hands.drop();
+    super.leave();
+  }
+
+  async play() {
+    if (this.mayHold && !this.playing && this.handles.groups.length === 0) return this.#tellNothingIsHeld();
+    await super.play();
   }
 
   /** Goes on at full speed until it rests. */
-  #hurry() {
+  hurry() {
+    if (!this.active) return;
+    if (this.playing && !this.solving) this.pause();
     this.hurried = true;
     if (!this.playing) this.keepGoing();
+  }
+
+  showNewest() {
+    if (this.shown < this.records.length - 1) this.show(this.records.length - 1);
   }
 
   finish() {
     this.#facts();
   }
+
+  #facts() {
+    if (this.session.problem) this.bench.facts(factsOf(this.session, { title: this.source.name ?? this.controls.solidTitle, threads: this.page.foldfree.threads }));
+  }
+
+  // ——— what people do ———
 
   /** Back to the start of the scene, with what is held now. */
   async reset() {
@@ -249,138 +334,57 @@ export class Deform extends Mode {
     await this.open(this.source, { keep: this.handles.groups.length > 0 });
   }
 
-  // ——— what people do ———
-
-  /** Plays a preset: scenes with a motion begin at rest, the others spoil what is on the bench. */
+  /** Plays a preset: those that spoil do so to what is on the bench, the others begin at rest. */
   async preset(name) {
     if (!this.whenReady(() => this.preset(name))) return;
     this.wanted.preset = name;
     const spoil = { random: scattered, collapse: collapsed }[name];
     if (spoil && this.records.length > 1 && this.handles.groups.length > 0) {
-      this.pause();
-      if (this.#scene) this.#scene.motion = undefined;
-      const start = spoil(this.#rest, this.handles.applied(this.session.positions), this.handles.pins());
-      if (!(await this.#rebuild({ fresh: true, start, go: false }))) return;
+      this.endMotion();
+      const pins = this.handles.pins();
+      const start = (positions) => spoil(this.#rest, positions, pins);
+      if ((await this.rebuild({ fresh: true, start, go: false })) !== 'done') return;
       this.remember();
     } else if (!(await this.open())) return;
-    await this.play();
+    if (name !== 'held' && !this.solving) await this.play();
   }
 
-  /** What people do on the canvas. */
   listen(name, value) {
-    if (!this.session?.ready || !this.#rest) return;
-    switch (name) {
-      case 'pin': return void this.pin(value);
-      case 'select':
-        this.handles.selected = value;
-        return this.#drawHandles();
-      case 'grab-handle':
-      case 'grab-vertex':
-        if (this.shown < this.records.length - 1) this.show(this.records.length - 1);
-        if (name === 'grab-handle') this.handles.grab(value);
-        else if (this.handles.groups.length > 0) this.handles.pull(value, this.session.positions);
-        // A hand on a handle ends its own motion.
-        if (this.#scene && name === 'grab-handle' && this.#scene.motion?.handle === value) this.#scene.motion = undefined;
-        return this.#drawHandles();
-      case 'drag':
-        if (!this.handles.dragging) return;
-        this.handles.drag(value);
-        return void this.#aim();
-      case 'turn':
-        this.handles.turn(this.#scene.axis, value);
-        return void this.#aim();
-      case 'drop':
-        if (!this.handles.dragging) return;
-        this.handles.drop();
-        return void this.#aim();
-      default:
-    }
+    this.hands.listen(name, value);
   }
 
-  /** Holds vertices where they are. */
-  async pin(vertices) {
-    if (!this.handles.add(vertices, this.session.positions)) return;
-    this.#drawHandles();
-    await this.#rebuild();
-  }
-
-  /** Lets the selected handle go, or all. */
   async release() {
-    if (!this.whenReady(() => this.release()) || !this.handles.release()) return;
-    if (this.#scene) this.#scene.motion = undefined;
-    this.#drawHandles();
-    await this.#rebuild();
+    if (this.whenReady(() => this.release())) await this.hands.release();
   }
 
-  /** Moves the selected handle by steps to the right and up in the view. */
-  nudge(right, up) {
-    const axes = this.bench.cameraAxes(NUDGE);
-    const delta = [0, 1, 2].map((k) => right * axes[k] + up * axes[3 + k]);
-    if (this.session?.ready && this.handles.move(delta)) this.#aim();
-  }
-
-  /** Turns the selected handle about the longest axis of the solid, a twelfth of a turn times `times`. */
-  twist(times) {
-    if (this.session?.ready && this.#scene && this.handles.twist(this.#scene.axis, (times * Math.PI) / 6)) this.#aim();
-  }
-
-  /** Selects the next handle. */
-  nextHandle() {
-    const count = this.handles.groups.length;
-    if (count === 0) return;
-    this.handles.selected = (this.handles.selected + 1) % count;
-    this.#drawHandles();
-  }
-
-  async #aim() {
-    this.#drawTargets();
-    try {
-      await this.session.aim(this.handles.targets());
-      if (!this.session.finished) this.#hurry();
-    } catch (error) {
-      notice('It cannot go there', describe(error));
-    }
-  }
-
-  // ——— what is shown ———
-
-  #drawHandles() {
-    this.bench?.handles(this.handles);
-    this.#drawTargets();
-    this.#controls.reflectHandles();
-  }
-
-  #drawTargets() {
-    this.bench?.targets(this.handles.targets());
-  }
-
-  /** Colours, cut and tool, as the controls say. */
-  #look() {
-    const { field, cut, at } = this.wanted;
-    this.bench.field(field);
-    this.bench.cut('xyz'.indexOf(cut), at);
-    this.#controls.look();
-  }
-
-  /** How the solid is looked at: `field`, `cut`, `at`. */
-  look(key, value) {
-    this.wanted[key] = value;
-    this.#good[key] = value;
-    if (this.page.canvas) this.#look();
-    this.remember();
-  }
-
-  /** A parameter of the solver. */
+  /** A parameter of the solver: another energy or method begins another curve. */
   async change(key, value) {
     this.wanted[key] = value;
     this.reflect();
     if (!this.whenReady(() => this.open())) return;
+    if (this.records.length < 2 && this.handles.groups.length > 0) await this.open(this.source, { keep: true });
+    else await this.rebuild({ fresh: true });
     this.remember();
-    if (this.records.length < 2) await this.open(this.source, { keep: true });
-    else if (!(await this.#rebuild({ fresh: key === 'method' }))) {
-      Object.assign(this.wanted, this.#good);
-      this.reflect();
-    }
+  }
+
+  pickMethod(index) {
+    const method = this.controls.methods[index];
+    if (method && METHODS[method]) this.change('method', method);
+  }
+
+  /** How the solid is looked at: `field`, `cut`, `at`. */
+  look(key, value, { moving = false } = {}) {
+    this.wanted[key] = value;
+    this.#good[key] = value;
+    if (this.page.canvas) this.#look();
+    if (!moving) this.remember();
+  }
+
+  #look() {
+    const { field, cut, at } = this.wanted;
+    this.bench.field(field);
+    this.bench.cut('xyz'.indexOf(cut), at);
+    this.controls.look();
   }
 
   async changeSolid(solid, tetrahedra) {
@@ -393,69 +397,45 @@ export class Deform extends Mode {
   async openFiles(files) {
     if (!this.whenReady(() => this.openFiles(files))) return;
     const [file] = files;
-    this.page.busy(`Reading ${file.name}`);
+    this.busy(`Reading ${file.name}`);
     let next;
     try {
       next = await readSolidFiles(files);
     } catch (error) {
-      this.page.busy('');
-      return notice(`${file.name} was not opened`, describe(error));
+      this.busy('');
+      return this.notice(`${file.name} was not opened`, describe(error));
     }
-    const before = this.wanted.preset;
     this.wanted.preset = 'held';
-    if (!(await this.open(next, { busy: `Reading ${file.name}` }))) this.wanted.preset = before;
-  }
-
-  #facts() {
-    const { problem, certificate } = this.session;
-    if (!problem) return;
-    const { setupSeconds, notes, pins } = problem;
-    const pairs = [
-      ['solid', this.source.name ?? this.#controls.solidTitle],
-      ['vertices', whole(this.#rest.length / 3)],
-      ['held', `${whole(pins)} vertices`],
-      ['setup', `${number(1000 * setupSeconds, 3)} ms`],
-      ['threads', String(this.page.foldfree.threads)],
-      ...notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
-    ];
-    if (this.session.finished && this.session.newest.iteration > 0) pairs.push(['ended', `${ending(this.session.newest)} after ${this.session.newest.iteration}`]);
-    if (certificate) {
-      const wrong = certificate.inverted.length + certificate.degenerate.length;
-      pairs.push(['certificate', wrong === 0 ? 'no tetrahedron inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
-      if (wrong === 0) pairs.push(['', certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)']);
-    }
-    this.bench.facts(pairs);
+    await this.open(next, { busy: `Reading ${file.name}` });
   }
 
   reflect() {
-    this.#controls.reflect();
+    this.controls.reflect();
   }
 
+  /** Writes what is on the bench into the address; of a file only how it is solved and looked at. */
   remember(extra = {}) {
     if (!this.active) return;
     const { wanted, source } = this;
-    const { field, cut, at } = wanted;
-    if (source.bytes) writeAddress('deform', { field, cut, at });
-    else writeAddress('deform', { ...wanted, steps: undefined, solid: source.solid, tetrahedra: source.tetrahedra, ...extra });
+    const solid = source.bytes ? { solid: undefined, tetrahedra: undefined } : { solid: source.solid, tetrahedra: source.tetrahedra };
+    writeAddress('deform', { ...wanted, steps: undefined, ...solid, ...(!source.bytes && extra) });
+  }
+
+  /** What a link does not carry, besides files. */
+  get notShared() {
+    return this.hands.used ? 'What you pinned, released and dragged stays here.' : '';
   }
 
   get exports() {
     const name = (this.source.name ?? this.source.solid).replace(/\.(mesh|msh|vtk|node)(\.gz)?$/i, '');
+    const { session } = this;
     return {
-      'export-solid': async () => save(medit(await this.session.result(), this.session.solid.tetrahedra), `${name}-${this.wanted.method}.mesh`, 'text/plain'),
-      'export-trace': async () => save(`${JSON.stringify(await this.session.trace(), null, 1)}\n`, `${name}-${this.wanted.method}.json`, 'application/json'),
+      'export-solid': async () => save(await session.solid.write('mesh', await session.result()), `${name}-${this.wanted.method}.mesh`, 'text/plain'),
+      'export-trace': async () => save(`${JSON.stringify(await session.trace(), null, 1)}\n`, `${name}-${this.wanted.method}.json`, 'application/json'),
     };
   }
 
   connect() {
-    this.#controls.connect();
-  }
-
-  pickMethod(index) {
-    const method = this.#controls.methods[index];
-    if (method && METHODS[method]) this.change('method', method);
+    this.controls.connect();
   }
 }
-
-const matches = (a, b) => a !== undefined && b !== undefined && a.length === b.length && a.every((x, i) => x === b[i]);
-

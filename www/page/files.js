@@ -34,16 +34,6 @@ export async function readSolidFiles(files) {
   return first.format === 'node' ? { ...first, elements: elements.bytes } : first;
 }
 
-/** A solid as a MEDIT .mesh file. */
-export function medit(positions, tetrahedra) {
-  const lines = ['MeshVersionFormatted 2', 'Dimension 3', 'Vertices', String(positions.length / 3)];
-  for (let i = 0; i < positions.length; i += 3) lines.push(`${positions[i]} ${positions[i + 1]} ${positions[i + 2]} 0`);
-  lines.push('Tetrahedra', String(tetrahedra.length / 4));
-  for (let i = 0; i < tetrahedra.length; i += 4) lines.push(`${Array.from(tetrahedra.subarray(i, i + 4), (v) => v + 1).join(' ')} 0`);
-  lines.push('End', '');
-  return lines.join('\n');
-}
-
 /** Lets the browser save `content` under `name`. */
 export function save(content, name, type) {
   const link = document.createElement('a');

@@ -3,7 +3,7 @@ import { DEFAULTS, isDefault, readAddress, writeAddress } from './address.js';
 import { preparedStart } from './canvas.js';
 import { readMeshFile, save } from './files.js';
 import { Mode } from './mode.js';
-import { clearNotice, describe, notice } from './notice.js';
+import { describe } from './notice.js';
 import { Session } from './session.js';
 import { METHODS, ending, number, whole } from './words.js';
 
@@ -13,6 +13,7 @@ const DIRECT = ['lscm', 'harmonic', 'tutte'];
 export class Flatten extends Mode {
   static accepts = '.obj,.off,.ply,.stl,.mesh,.msh,.vtk,.gz';
   static dropHere = 'Drop a surface to flatten it: OBJ, OFF, PLY, STL, MESH, MSH or VTK';
+  static label = 'A surface in 3D, its flat map, the convergence plot and what the step did';
   static first = 'map'; // the view a phone shows
   static views = { map: 'Map', shape: 'Surface', plot: 'Plot', inspector: 'Step' };
   wanted = readAddress('flatten'); // what the controls say
@@ -110,13 +111,14 @@ export class Flatten extends Mode {
   /** Solves `next` instead of what is on the bench; on failure the bench stays as it is. */
   async open(next = this.source, { busy = '' } = {}) {
     this.pause();
-    const { wanted, session, page } = this;
+    const { wanted, session } = this;
     const asked = { ...wanted };
-    if (busy) page.busy(busy);
+    let overtaken = false; // what came later says what is going on
+    if (busy) this.busy(busy);
     try {
       const { method, energy, start } = wanted;
       const opened = await session.open({ source: next, settings: { method, energy, start } });
-      if (!opened) return false;
+      if (!opened) return (overtaken = true, false);
       this.source = next;
       if (opened.surface) this.bench.surface(opened.surface);
       this.bench.begin(method, session.problem.startKind, energy);
@@ -124,19 +126,19 @@ export class Flatten extends Mode {
       this.records = session.records;
       this.show(0);
       this.#facts();
-      if (this.active) clearNotice();
+      this.clearNotice();
       this.remember();
       this.invite();
       this.#good = { ...asked };
       return true;
     } catch (error) {
       const name = next.name ?? next.sample;
-      notice(next === this.source ? `${METHODS[wanted.method]} could not start` : `${name} was not opened`, describe(error));
+      this.notice(next === this.source ? `${METHODS[wanted.method]} could not start` : `${name} was not opened`, describe(error));
       Object.assign(wanted, this.#good);
       if (this.records.length) this.show(this.shown, { quietly: true });
       return false;
     } finally {
-      page.busy('');
+      if (!overtaken) this.busy('');
       this.reflect();
     }
   }
@@ -145,8 +147,8 @@ export class Flatten extends Mode {
   remember(extra = {}) {
     if (!this.active) return;
     const { wanted, source } = this;
-    if (source.bytes) writeAddress('flatten', {});
-    else writeAddress('flatten', { ...wanted, steps: undefined, sample: source.sample, triangles: source.triangles, ...extra });
+    const sample = source.bytes ? { sample: undefined, triangles: undefined } : { sample: source.sample, triangles: source.triangles };
+    writeAddress('flatten', { ...wanted, steps: undefined, ...sample, ...(!source.bytes && extra) });
   }
 
   async reset() {
@@ -172,13 +174,13 @@ export class Flatten extends Mode {
   async openFiles(files) {
     if (!this.whenReady(() => this.openFiles(files))) return;
     const [file] = files;
-    this.page.busy(`Reading ${file.name}`);
+    this.busy(`Reading ${file.name}`);
     let next;
     try {
       next = await readMeshFile(file);
     } catch (error) {
-      this.page.busy('');
-      return notice(`${file.name} was not opened`, describe(error));
+      this.busy('');
+      return this.notice(`${file.name} was not opened`, describe(error));
     }
     if (this.wanted.start === 'random' || this.wanted.start === 'collapsed') this.wanted.start = 'automatic';
     await this.open(next, { busy: `Reading ${file.name}` });

@@ -52,9 +52,11 @@ export class Handles {
     return out;
   }
 
-  /** Puts every handle where its vertices are in `positions`. */
-  returnTo(positions) {
-    for (const group of this.groups) group.at = pick(positions, group.vertices);
+  /** Has these handles and no others, where they are now. */
+  keepOnly(groups) {
+    this.groups = [...groups];
+    this.selected = -1;
+    this.drop();
   }
 
   /** A handle is dragged from now on. */

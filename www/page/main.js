@@ -1,6 +1,6 @@
 // The page: connects the controls, the canvas, the solver, and the modes.
 import { load } from '../pkg/index.js';
-import { modeOf } from './address.js';
+import { MOST_STEPS, modeOf } from './address.js';
 import { startCanvas } from './canvas.js';
 import { Deform } from './deform.js';
 import { acceptDrops } from './files.js';
@@ -32,7 +32,7 @@ function setBusy(text, progress) {
 /** Shows what belongs to the active mode. */
 function dress() {
   const { active } = page;
-  const { accepts, dropHere, views } = active.constructor;
+  const { accepts, dropHere, views, label } = active.constructor;
   document.body.dataset.mode = active.name;
   for (const element of document.querySelectorAll('[data-for]')) element.hidden = element.dataset.for !== active.name;
   for (const button of document.querySelectorAll('[data-mode-button]')) {
@@ -42,19 +42,19 @@ function dress() {
   $('file').accept = accepts;
   $('drop').firstElementChild.textContent = dropHere;
   nameViews(views, active.constructor.first);
+  $('canvas').setAttribute('aria-label', label);
   page.canvas?.mode(active.name);
 }
 
 /** Another mode; what lies on the bench of this one stays there. */
 async function switchTo(name) {
   if (page.active.name === name) return;
-  page.active.pause();
+  page.active.leave();
   page.active = modes[name];
   const { active } = page;
-  setBusy('');
   clearNotice();
   dress();
-  active.setPlaying(false);
+  active.enter();
   active.remember();
   $('invite').hidden = true;
   if (active.records.length) {
@@ -62,9 +62,11 @@ async function switchTo(name) {
     active.invite();
   } else {
     drawStatus(active);
-    await enter();
   }
+  if (!active.session?.ready) await enter();
 }
+
+const arriving = {}; // the modes' first problems, while they are put on their benches
 
 /** Puts the active mode's first problem on its bench. */
 async function enter() {
@@ -72,9 +74,10 @@ async function enter() {
   const drawn = page.canvas ? await active.prepare() : false;
   document.body.dataset.drawn = drawn ? 'prepared' : 'empty';
   if (!page.foldfree) return drawn;
-  if (!drawn) setBusy('Preparing the problem');
-  const opened = await active.arrive(page.foldfree);
-  setBusy('');
+  active.busy(drawn ? '' : 'Preparing the problem');
+  arriving[active.name] ??= active.arrive(page.foldfree).finally(() => { arriving[active.name] = undefined; });
+  const opened = await arriving[active.name];
+  active.busy('');
   return opened || drawn;
 }
 
@@ -93,19 +96,22 @@ async function exporting(id) {
 
 async function share() {
   const { active } = page;
-  active.remember({ steps: active.shown || undefined });
-  const carried = !active.source.bytes;
-  if (!carried) notice('A link cannot carry a file', 'It has the solver and its settings; the file stays with you.', { plain: true });
+  const { notShared = '', shown, source } = active;
+  // Steps are made again by whoever opens the link: only what follows from the address, and not for too long.
+  active.remember({ steps: shown > 0 && shown <= MOST_STEPS && !notShared ? shown : undefined });
+  const stays = source.bytes ? 'It has the solver and its settings; the file stays with you.' : notShared;
+  let title = 'The link is copied';
   try {
     await navigator.clipboard.writeText(location.href);
-    if (carried) notice('The link is copied', location.href, { plain: true });
   } catch {
-    notice('The link is in the address bar', location.href, { plain: true });
+    title = 'The link is in the address bar';
   }
+  notice(title, stays || location.href, { plain: true });
 }
 
 function connect() {
   const act = (name, ...args) => () => page.active[name]?.(...args);
+  const hand = (name, ...args) => () => page.active.hands?.[name](...args);
   const show = (where) => () => page.active.scrub(where(page.active));
   for (const mode of Object.values(modes)) mode.connect();
   for (const button of document.querySelectorAll('[data-mode-button]')) {
@@ -147,7 +153,8 @@ function connect() {
     r: act('reset'), f: () => page.canvas?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
     p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     m: () => switchTo(page.active === modes.flatten ? 'deform' : 'flatten'),
-    h: act('nextHandle'), j: act('nudge', -1, 0), l: act('nudge', 1, 0), i: act('nudge', 0, 1), k: act('nudge', 0, -1), u: act('twist', -1), y: act('twist', 1), Delete: act('release'),
+    h: hand('next'), j: hand('nudge', -1, 0), l: hand('nudge', 1, 0), i: hand('nudge', 0, 1), k: hand('nudge', 0, -1),
+    u: hand('twist', -1), y: hand('twist', 1), b: hand('nextPlace'), n: hand('pinPlace'), Delete: hand('release', false), Backspace: hand('release', false),
     ...Object.fromEntries(digits),
   });
 }

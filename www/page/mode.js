@@ -1,5 +1,5 @@
 // What the modes share: a list of iterates, the one that is shown, and playing on.
-import { describe, notice } from './notice.js';
+import { clearNotice, describe, notice } from './notice.js';
 import { drawStatus, speak } from './status.js';
 import { ending, spoken } from './words.js';
 
@@ -26,6 +26,9 @@ export class Mode {
   #soon;
   #follows = true; // whether what is shown is the newest, and stays so
   #pending; // an act a person asked for before the solver had come
+  #film = false; // whether what plays is the history
+  #busy = ''; // what it is busy with
+  #unsaid; // a failure that came while another mode was on show
 
   /** `page`: `{ canvas, foldfree, active, busy(text, part) }`. */
   constructor(page, name) {
@@ -46,10 +49,52 @@ export class Mode {
     return this.#pending !== undefined;
   }
 
+  // ——— on show, or not ———
+
+  /** Another mode is shown from now on. */
+  leave() {
+    this.pause();
+    cancelAnimationFrame(this.#soon);
+    this.#soon = undefined;
+  }
+
+  /** This mode is on show again, with its bench. */
+  enter() {
+    this.setPlaying(false);
+    this.page.busy(this.#busy);
+    if (this.#unsaid) notice(...this.#unsaid);
+    this.#unsaid = undefined;
+  }
+
+  /** Says what it is busy with, or that it is no more. */
+  busy(text) {
+    this.#busy = text;
+    if (this.active) this.page.busy(text);
+  }
+
+  /** Tells of something, as `notice` does; a failure waits until this mode is on show. */
+  notice(title, text, options = {}) {
+    if (this.active) notice(title, text, options);
+    else if (!options.plain) this.#unsaid = [title, text, options];
+  }
+
+  /** Says something to people who listen instead of looking. */
+  say(text) {
+    if (this.active) speak(text, { now: true });
+  }
+
+  /** Takes a message away: any, or that of a `title`. */
+  clearNotice(title) {
+    if (this.active) clearNotice(title);
+    if (title === undefined || this.#unsaid?.[0] === title) this.#unsaid = undefined;
+  }
+
   // ——— what subclasses say ———
 
   /** The one obvious button: `{ button, text }`, or nothing. */
   invitation() {}
+  /** The numbers of an iterate as people read them. */
+  readout(record) { return record; }
   /** Hands a step to the canvas. */
   push(step) { this.bench.push(step); }
   /** Before a step is made: moves what moves by itself. */
@@ -68,7 +113,7 @@ export class Mode {
     this.bench?.show(this.shown);
     if (!this.active) return;
     drawStatus(this);
-    if (!quietly) speak(spoken(this.records[this.shown]), { now: !this.playing });
+    if (!quietly) speak(spoken(this.readout(this.records[this.shown])), { now: !this.playing });
   }
 
   /** Shows the newest iterate with the next frame, however many come until then. */
@@ -94,6 +139,7 @@ export class Mode {
 
   setPlaying(on) {
     this.playing = on;
+    if (!this.active) return;
     const button = $('play');
     button.classList.toggle('playing', on);
     button.setAttribute('aria-label', on ? 'Pause' : 'Play');
@@ -108,7 +154,7 @@ export class Mode {
     this.setPlaying(false);
     if (this.records[this.shown] && this.active) {
       drawStatus(this);
-      speak(spoken(this.records[this.shown]), { now: true });
+      speak(spoken(this.readout(this.records[this.shown])), { now: true });
     }
   }
 
@@ -116,8 +162,8 @@ export class Mode {
   whenReady(act) {
     if (this.session?.ready) return true;
     this.#pending = act;
-    $('invite').hidden = true;
-    if (this.page.canvas && !this.session) this.page.busy('Loading the solver');
+    if (this.active) $('invite').hidden = true;
+    if (this.page.canvas && !this.session) this.busy('Loading the solver');
     return false;
   }
 
@@ -125,12 +171,12 @@ export class Mode {
   async catchUp() {
     const act = this.#pending;
     this.#pending = undefined;
-    await act?.();
+    if (this.active) await act?.();
   }
 
   /** Makes one step after those asked for before it and shows it; false when there is none to make. */
-  stepOnce() {
-    this.#lastStep = this.#lastStep.then(() => this.#makeStep());
+  stepOnce(mayGo = () => true) {
+    this.#lastStep = this.#lastStep.then(() => mayGo() && this.#makeStep());
     return this.#lastStep;
   }
 
@@ -142,7 +188,7 @@ export class Mode {
       this.took(step);
       return !this.session.finished || this.restless;
     } catch (error) {
-      notice('The solver stopped', describe(error));
+      this.notice('The solver stopped', describe(error));
       return false;
     }
   }
@@ -157,22 +203,24 @@ export class Mode {
 
   ended(step) {
     this.finish(step);
-    if (step.status !== 'converged') notice('The solver ended', `${ending(step)} after ${step.iteration} iterations.`, { plain: true });
+    if (step.status !== 'converged') this.notice('The solver ended', `${ending(step)} after ${step.iteration} iterations.`, { plain: true });
   }
 
   async play() {
-    if (!this.whenReady(() => this.play())) return;
+    if (!this.active || !this.whenReady(() => this.play())) return;
     if (this.playing) return this.pause();
     if (this.session.finished && !this.restless) {
       // Nothing left to solve: play the film again.
       if (this.shown >= this.records.length - 1) this.show(0);
-      return this.#film();
+      return this.#playFilm();
     }
     await this.keepGoing();
   }
 
   /** Steps at the pace until there is nothing more to do, or a person says stop. */
   async keepGoing() {
+    if (!this.active) return;
+    this.#film = false;
     this.setPlaying(true);
     const mine = ++this.#task;
     const mayGo = () => this.playing && mine === this.#task;
@@ -180,7 +228,7 @@ export class Mode {
     let due = performance.now();
     while (mayGo()) {
       const pace = this.hurried ? 0 : Number($('pace').value);
-      const more = pace === 0 && this.session.run ? await this.runFreely(mayGo) : await this.stepOnce();
+      const more = pace === 0 && this.session.run ? await this.runFreely(mayGo) : await this.stepOnce(mayGo);
       if (!more && mayGo()) this.pause();
       if (pace > 0) { // else as fast as it can: the worker steps, the page draws the newest every frame
         await nextFrame();
@@ -190,15 +238,23 @@ export class Mode {
     }
   }
 
-  async #film() {
+  /** Whether it plays, and what it plays is the solver's work and not the history. */
+  get solving() {
+    return this.playing && !this.#film;
+  }
+
+  async #playFilm() {
+    const mine = ++this.#task;
+    const mayGo = () => this.playing && mine === this.#task;
+    this.#film = true;
     this.setPlaying(true);
-    while (this.playing && this.shown < this.records.length - 1) {
+    while (mayGo() && this.shown < this.records.length - 1) {
       const wait = 1000 / (Number($('pace').value) || 60);
       this.show(this.shown + 1);
       const until = performance.now() + wait;
-      do await nextFrame(); while (this.playing && performance.now() < until);
+      do await nextFrame(); while (mayGo() && performance.now() < until);
     }
-    this.pause();
+    if (mayGo()) this.pause();
   }
 
   async steps(count) {
@@ -207,8 +263,9 @@ export class Mode {
     $('invite').hidden = true;
     if (this.shown < this.records.length - 1) return this.show(this.shown + count);
     const mine = this.#task;
-    for (let i = 0; i < count && mine === this.#task; i += 1) {
-      if (!(await this.stepOnce())) break;
+    const mayGo = () => mine === this.#task;
+    for (let i = 0; i < count && mayGo(); i += 1) {
+      if (!(await this.stepOnce(mayGo))) break;
     }
   }
 

@@ -3,12 +3,13 @@
 /** Part of the longest axis that counts as an end. */
 const END = 0.08;
 
-/** What a preset does in one iteration, and altogether. */
-const TWIST = { perStep: (3 * Math.PI) / 180, total: 2 * Math.PI };
-const SQUASH = { perStep: 0.008, total: 0.45 };
+/** How far a preset goes, in how many seconds when it plays freely, and in how many iterations otherwise. */
+const TWIST = { total: 2 * Math.PI, seconds: 5, steps: 60 };
+const SQUASH = { total: 0.45, seconds: 3, steps: 60 };
 
 /** Names, in the order of the buttons: what the button says, what it is for. */
 export const PRESETS = {
+  held: { title: 'At rest', hint: 'Both ends are held, and nothing moves until you drag something' },
   squash: { title: 'Squash', hint: 'Both ends are held, and one is pressed towards the other' },
   twist: { title: 'Twist', hint: 'Both ends are held, and one is turned once round' },
   random: { title: 'Randomise', hint: 'Everything that is not held goes to a random place' },
@@ -98,17 +99,19 @@ export function collapsed(rest, positions, held) {
 }
 
 /**
- * The scene of a preset on a solid at rest: its longest `axis`, `held` handles (lists of vertices), the `start` (n×3), and
- * the `motion` of one handle, if any: `{ handle, steps, at(k) }`, where its vertices are after k iterations.
+ * The scene of a preset on a solid at rest: its longest `axis`, `held` handles (lists of vertices; `kept`, or else the
+ * ends), the `start` (n×3) with all of them at their places, and the `motion` of the upper end, if it is one of them:
+ * `{ handle, seconds, steps, at(part) }`, where its vertices are after a part (0–1) of it.
  */
-export function scene(preset, rest) {
+export function scene(preset, rest, kept) {
   const { axis, length, low, high } = ends(rest);
   const start = Float64Array.from(rest);
   // A solid so coarse that its ends meet, or are all of it, is held at one of them.
   const apart = low.length + high.length < rest.length / 3 && !low.some((v) => high.includes(v));
-  const held = apart ? [low, high] : [low];
+  const held = kept ?? (apart ? [low, high] : [low]);
+  const handle = apart ? held.findIndex((vertices) => same(vertices, high)) : -1;
   const base = pick(rest, high);
-  const motion = (rate, at) => (apart ? { handle: 1, steps: Math.ceil(rate.total / rate.perStep - 1e-9), at: (k) => at(Math.min(k * rate.perStep, rate.total)) } : undefined);
+  const motion = ({ total, seconds, steps }, at) => (handle < 0 ? undefined : { handle, seconds, steps, at: (part) => at(part * total) });
   switch (preset) {
     case 'squash':
       return { axis, held, start, motion: motion(SQUASH, (part) => base.map((x, i) => (i % 3 === axis ? x - part * length : x))) };
@@ -116,7 +119,7 @@ export function scene(preset, rest) {
       return { axis, held, start, motion: motion(TWIST, (angle) => turned(base, axis, angle)) };
     case 'random':
     case 'collapse': {
-      if (apart) {
+      if (handle >= 0) {
         const half = turned(base, axis, Math.PI);
         high.forEach((v, i) => start.set(half.subarray(3 * i, 3 * i + 3), 3 * v));
       }
@@ -127,3 +130,5 @@ export function scene(preset, rest) {
       return { axis, held, start };
   }
 }
+
+const same = (a, b) => a.length === b.length && a.every((x, i) => x === b[i]);

@@ -13,7 +13,7 @@ function part(className, ...children) {
 /** Writes where `mode` is. */
 export function drawStatus(mode) {
   const { records, shown } = mode;
-  const record = records[shown];
+  const record = records[shown] && mode.readout(records[shown]);
   if (!record) return $('status').replaceChildren(part('quiet', mode.idle ?? 'loading'));
   const newest = records.length - 1;
   const hatch = record.inverted > 0 ? [part('hatch')] : [];

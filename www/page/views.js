@@ -38,10 +38,13 @@ function arrange() {
   board?.view(narrow.matches ? tab : 'all');
   const wide = innerWidth >= 1000;
   const box = $('invite').style;
-  // Over the middle of the map, a little above its middle.
+  // Over the middle of the map, a little above its middle; below the whole solid, which has to be seen.
+  const deforming = document.body.dataset.mode === 'deform';
   const column = wide && !narrow.matches && !projecting() ? 292 : 0;
-  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * 0.75)`);
-  box.setProperty('--invite-y', narrow.matches ? '50%' : '34%');
+  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${deforming ? 0.25 : 0.75})`);
+  // The plot below the views has at most 250 points (layout.rs).
+  const low = narrow.matches ? 'calc(100% - 86px)' : 'calc(100% - clamp(130px, 30%, 250px) - 74px)';
+  box.setProperty('--invite-y', deforming ? low : narrow.matches ? '50%' : '34%');
 }
 
 /** Shows one view, on a phone. */

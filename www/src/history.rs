@@ -41,15 +41,15 @@ impl PhaseKind {
 pub struct Record {
     /// 0 is the start.
     pub iteration: u32,
-    /// Energy; an isometry has 1 (symmetric Dirichlet) or 0 (ARAP).
+    /// Energy, relative: to the area of a surface, to the volume and stiffness of a solid.
     pub energy: f64,
-    /// Inverted triangles.
+    /// Inverted elements: triangles, tetrahedra.
     pub inverted: u32,
-    /// Length of the gradient.
+    /// Length of the gradient, relative as the energy.
     pub gradient_norm: f64,
-    /// Smallest singular value over the triangles.
+    /// Smallest singular value over the elements.
     pub smallest_sigma: f64,
-    /// Largest singular value over the triangles.
+    /// Largest singular value over the elements.
     pub largest_sigma: f64,
     /// L-BFGS iterations of the global step.
     pub lbfgs_iterations: u32,
@@ -105,7 +105,7 @@ impl Record {
         })
     }
 
-    /// max(σ₁, 1/σ₂) over the triangles; infinite while one is inverted or collapsed.
+    /// max(σ₁, 1/σ of the last) over the elements; infinite while one is inverted or collapsed.
     pub fn worst_distortion(&self) -> f64 {
         if self.smallest_sigma > 0.0 && self.inverted == 0 {
             self.largest_sigma.max(1.0 / self.smallest_sigma)

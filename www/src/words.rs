@@ -179,9 +179,9 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
 pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
     if solid {
         match energy {
-            "symmetric-dirichlet" => "energy (undeformed: 1)",
-            "dirichlet" => "energy",
-            _ => "energy (undeformed: 0)",
+            "symmetric-dirichlet" => "relative energy (undeformed: 2)",
+            "dirichlet" => "relative energy (undeformed: 1.5)",
+            _ => "relative energy (undeformed: 0)",
         }
     } else if energy == "arap" {
         "energy (isometry: 0)"

@@ -5,7 +5,11 @@ import { join } from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { initSync } from '../../pkg/core.js';
 import { Handles } from '../page/handles.js';
+import { landmarks } from '../page/landmarks.js';
+import { MATERIALS } from '../page/materials.js';
+import { Motion } from '../page/motion.js';
 import { bounds, collapsed, ends, scattered, scene, turned } from '../page/presets.js';
+import { relativeTo, volumeOf } from '../page/relative.js';
 import { preparedSolid } from '../prepare-start.mjs';
 import { audit, download, drop, launch, onPageOf, root, status } from './harness.mjs';
 
@@ -87,6 +91,10 @@ describe('scenes and handles', () => {
       const spoilt = spoil(bar, bar, [0, 5]);
       assert.deepEqual([...spoilt.slice(0, 3)], [...bar.slice(0, 3)]);
       assert.deepEqual([...spoilt.slice(15, 18)], [...bar.slice(15, 18)]);
+      const moved = Array.from({ length: 44 }, (_, v) => [0, 1, 2].some((k) => spoilt[3 * v + k] !== bar[3 * v + k]));
+      assert.deepEqual(moved.flatMap((far, v) => (far ? [] : [v])), [0, 5], 'all but those moved');
+      const places = new Set(Array.from({ length: 44 }, (_, v) => spoilt.slice(3 * v, 3 * v + 3).join(' ')));
+      assert.equal(places.size, spoil === scattered ? 44 : 3, 'each to a place of its own, or all to one');
       const [{ low, high }, box] = [bounds(spoilt), bounds(bar)];
       assert.ok(low.every((x, k) => x >= box.low[k]) && high.every((x, k) => x <= box.high[k]));
       assert.deepEqual(spoil(bar, bar, [0, 5]), spoilt, 'the same every time');
@@ -96,10 +104,78 @@ describe('scenes and handles', () => {
   test('a twist ends after a whole turn, a squash short of the other end', () => {
     const twist = scene('twist', bar).motion;
     const first = twist.at(0);
-    twist.at(twist.steps).forEach((x, i) => assert.ok(Math.abs(x - first[i]) < 1e-9));
-    assert.ok(Math.abs(twist.at(twist.steps / 2)[1] - first[1]) > 0.5);
+    twist.at(1).forEach((x, i) => assert.ok(Math.abs(x - first[i]) < 1e-9));
+    assert.ok(Math.abs(twist.at(0.5)[1] - first[1]) > 0.5);
     const squash = scene('squash', bar).motion;
-    assert.ok(Math.abs(squash.at(squash.steps)[0] - 5.5) < 1e-9);
+    assert.ok(Math.abs(squash.at(1)[0] - 5.5) < 1e-9);
+  });
+
+  test('a motion goes by iterations, or by the clock in turns that are not too large', () => {
+    const plan = { handle: 1, seconds: 2, steps: 10, at: (part) => part };
+    const stepped = new Motion(plan);
+    for (let i = 1; i < 10; i += 1) assert.ok(Math.abs(stepped.advance() - i / 10) < 1e-12);
+    assert.equal(stepped.handle, 1);
+    assert.equal(stepped.advance(), 1);
+    assert.equal(stepped.handle, -1, 'it has come to its end');
+    const timed = new Motion(plan);
+    timed.advance({ freely: true, now: 0 });
+    assert.ok(Math.abs(timed.advance({ freely: true, now: 100 }) - 0.15) < 1e-12, 'a tenth of a second of two');
+    assert.ok(timed.advance({ freely: true, now: 60_000 }) < 0.3, 'a minute asleep is no leap');
+    timed.end();
+    assert.equal(timed.handle, -1);
+  });
+
+  test('a scene keeps the handles there are, and puts none of them at random', () => {
+    const { high, low } = ends(bar);
+    const extra = Uint32Array.of(5, 27);
+    const { held, start, motion } = scene('random', bar, [extra, high]);
+    assert.deepEqual(held, [extra, high]);
+    for (const v of extra) assert.deepEqual([...start.slice(3 * v, 3 * v + 3)], [...bar.slice(3 * v, 3 * v + 3)]);
+    assert.ok(low.some((v) => start[3 * v] !== bar[3 * v]), 'what was released is free');
+    assert.equal(motion, undefined);
+    assert.equal(scene('twist', bar, [extra, high]).motion.handle, 1);
+    assert.equal(scene('twist', bar, [extra]).motion, undefined, 'nothing turns when the end is free');
+  });
+
+  test('relative numbers know neither the unit of length nor that of pressure', () => {
+    const core = library();
+    const solid = core.generateSolid('box', 200);
+    const solve = (scale, young) => {
+      const positions = solid.positions.map((x) => scale * x);
+      const start = positions.map((x, i) => (i % 3 === 0 ? 1.2 * x : x));
+      const made = core.solid({ positions, tetrahedra: solid.tetrahedra });
+      const deformed = core.deform(made, { energy: 'neo-hookean', young, poisson: 0.3, pins: Uint32Array.of(0), start, field: 'stress' });
+      return relativeTo(young, volumeOf(positions, made.tetrahedra))(deformed.start);
+    };
+    const [a, b] = [solve(1, 1), solve(1000, 2e5)];
+    assert.ok(a.energy > 1e-3);
+    for (const key of ['energy', 'gradientNorm']) assert.ok(Math.abs(a[key] / b[key] - 1) < 1e-9, `${key}: ${a[key]}, ${b[key]}`);
+    a.field.forEach((x, i) => assert.ok(Math.abs(x - b.field[i]) < 1e-5 * x));
+  });
+
+  test('landmarks are vertices of the skin, each once, the corners among them', () => {
+    const solid = library().generateSolid('bar', 1000);
+    const found = landmarks(solid.positions, solid.surface);
+    const skin = new Set(solid.surface);
+    assert.ok(found.length >= 8 && new Set(found.map(({ vertex }) => vertex)).size === found.length);
+    assert.ok(found.every(({ vertex }) => skin.has(vertex)));
+    const corner = found.find(({ words }) => words === 'x 0 %, y 0 %, z 0 %');
+    const { low } = bounds(solid.positions);
+    low.forEach((x, k) => assert.ok(Math.abs(solid.positions[3 * corner.vertex + k] - x) < 1e-9));
+  });
+
+  test('the materials of the page are those of the library', () => {
+    const core = library();
+    const solid = core.generateSolid('box', 100);
+    for (const [energy, { elastic }] of Object.entries(MATERIALS)) {
+      const make = (young) => core.deform(solid, { energy, pins: Uint32Array.of(0), start: solid.positions.map((x, i) => (i % 3 ? x : 1.5 * x)), young, poisson: 0.3 }).start.energy;
+      assert.equal(make(1) !== make(1000), elastic, energy);
+    }
+    // The library names its materials when it is asked for one it does not know.
+    assert.throws(() => core.deform(solid, { energy: 'jelly', pins: Uint32Array.of(0) }), ({ message }) => {
+      assert.deepEqual(message.split('there are ')[1].split(', '), Object.keys(MATERIALS));
+      return true;
+    });
   });
 
   test('handles hold a vertex once, follow a drag, and let go', () => {
@@ -187,7 +263,16 @@ describe('solving', () => {
     await rest(page);
     const end = await status(page);
     assert.equal(end.inverted, 0, end.text);
-    assert.ok(end.iteration >= 120, 'a whole turn takes so many iterations at least');
+    const turn = await page.evaluate(() => {
+      const { session, handles } = globalThis.foldfreePage.mode;
+      const { vertices, at } = handles.groups[1];
+      const far = (p) => Math.max(...[...vertices].flatMap((v, i) => [0, 1, 2].map((k) => Math.abs(p[3 * v + k] - at[3 * i + k]))));
+      return [far(session.positions), far(session.solid.positions), session.certificate];
+    });
+    assert.ok(turn[0] < 1e-5 && turn[1] < 1e-5, 'a whole turn comes round');
+    assert.deepEqual([turn[2].inverted.length, turn[2].degenerate.length], [0, 0], 'by an exact check');
+    assert.ok(end.iteration >= 20, 'in more than a leap');
+    assert.ok(end.energy > 1e-3 && end.energy < 10, `relative: ${end.text}`);
     assert.equal(await page.evaluate(() => globalThis.foldfreePage.board.drawnInverted), 0);
     const worst = await page.evaluate(() => globalThis.foldfreePage.session.newest.largestSigma);
     assert.ok(worst > 1.2, `it is twisted, not back where it was: ${worst}`);
@@ -323,10 +408,121 @@ describe('handles', () => {
     await page.waitForFunction(() => globalThis.foldfreePage.mode.handles.groups.length === 2);
   });
 
-  onPage('when everything is released it says what is missing', { query: `${SMALL}&preset=held` }, async (page) => {
+  onPage('when everything is released it says what is missing, until something is pinned: by keyboard, too', { query: `${SMALL}&preset=held` }, async (page) => {
+    await page.click('#step');
     await page.click('#release');
     await page.waitForSelector('#notice:visible');
     assert.match(await page.textContent('#notice'), /Nothing is held/);
+    await page.keyboard.press('Delete');
+    await page.keyboard.press('b');
+    const spoken = await page.textContent('#spoken');
+    assert.match(spoken, /Vertex at x \d+ %, y \d+ %, z \d+ %/);
+    await page.keyboard.press('b');
+    assert.notEqual(await page.textContent('#spoken'), spoken);
+    await page.keyboard.press('n');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem.pins === 1 && document.getElementById('notice').hidden);
+    assert.deepEqual(await pinned(page), [1]);
+    await rest(page);
+    await page.keyboard.press('n');
+    assert.match(await page.textContent('#spoken'), /held already/);
+    await page.keyboard.press('Backspace');
+    await page.waitForSelector('#notice:visible');
+  });
+
+  onPage('Delete takes only what is selected; what a handle does is spoken, and its buttons turn it', { query: `${SMALL}&preset=held` }, async (page) => {
+    await page.keyboard.press('Delete');
+    assert.equal((await pinned(page)).length, 2);
+    assert.ok(await page.isDisabled('#turn-on'));
+    await page.keyboard.press('h');
+    assert.match(await page.textContent('#spoken'), /Selected: handle 1 of 2, \d+ vertices/);
+    const before = await page.evaluate(() => [...globalThis.foldfreePage.mode.handles.groups[0].at]);
+    await page.click('#turn-on');
+    await rest(page);
+    const after = await page.evaluate(() => [...globalThis.foldfreePage.mode.handles.groups[0].at]);
+    const far = before.map((x, i) => Math.abs(x - after[i]));
+    assert.ok(Math.max(...far.filter((_, i) => i % 3 !== 0)) > 0.05 && Math.max(...far.filter((_, i) => i % 3 === 0)) < 1e-12);
+    assert.ok((await status(page)).iteration > 0);
+  });
+});
+
+describe('one thing after the other', () => {
+  onPage('two solvers picked at once: the later stays, in the controls too', { query: `${SMALL}&preset=twist` }, async (page) => {
+    await page.click('#step');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
+    await page.evaluate(() => { for (const key of ['2', '4']) window.dispatchEvent(new KeyboardEvent('keydown', { key })); });
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem.settings.method === 'admm-pd');
+    assert.equal(await page.inputValue('#deform-method'), 'admm-pd');
+    assert.match(page.url(), /method=admm-pd/);
+    assert.ok(await page.isHidden('#notice'));
+  });
+
+  onPage('a handle that moves while a solver is built arrives', { query: `${SMALL}&preset=held` }, async (page) => {
+    await page.click('#step');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
+    await page.keyboard.press('h');
+    const first = await page.evaluate(() => globalThis.foldfreePage.mode.handles.groups[0].at[1]);
+    await page.evaluate(() => { for (const key of ['5', 'i', 'i', 'i']) window.dispatchEvent(new KeyboardEvent('keydown', { key })); });
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem.settings.method === 'l-bfgs');
+    await rest(page);
+    const [there, wish] = await page.evaluate(() => {
+      const { handles, session } = globalThis.foldfreePage.mode;
+      const { vertices, at } = handles.groups[0];
+      return [[...session.positions.slice(3 * vertices[0], 3 * vertices[0] + 3)], [...at.slice(0, 3)]];
+    });
+    there.forEach((x, k) => assert.ok(Math.abs(x - wish[k]) < 1e-5));
+    assert.notEqual(wish[1], first);
+  });
+
+  onPage('everything released while it runs: it stays still, and a play says why', { query: `${SMALL}&preset=random` }, async (page) => {
+    await page.selectOption('#pace', '0');
+    await page.click('#unfold');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown > 1);
+    await page.click('#release');
+    await page.waitForSelector('#play:not(.playing)');
+    await page.waitForTimeout(300);
+    const { iteration } = await status(page);
+    await page.click('#notice-close');
+    await page.click('#play');
+    await page.waitForSelector('#notice:visible');
+    await page.waitForTimeout(300);
+    assert.equal((await status(page)).iteration, iteration);
+    assert.ok(await page.evaluate(() => globalThis.foldfreePage.session.finished));
+  });
+
+  onPage('a solver that is ready when another mode is on show does not play there', { query: `${SMALL}&preset=twist` }, async (page) => {
+    await page.click('#step');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
+    await page.evaluate(() => {
+      globalThis.deformMode = globalThis.foldfreePage.mode;
+      for (const key of ['4', 'm']) window.dispatchEvent(new KeyboardEvent('keydown', { key }));
+    });
+    await page.waitForFunction(() => globalThis.deformMode.session.problem.settings.method === 'admm-pd');
+    await page.waitForTimeout(400);
+    assert.equal(await page.evaluate(() => globalThis.deformMode.playing), false);
+    assert.equal(await page.getAttribute('#play', 'aria-label'), 'Play');
+    const count = await page.evaluate(() => globalThis.deformMode.session.records.length);
+    await page.waitForTimeout(300);
+    assert.equal(await page.evaluate(() => globalThis.deformMode.session.records.length), count);
+  });
+
+  onPage('a worker that dies says what to do, and R does it', {
+    query: `${SMALL}&preset=twist`,
+    prepare: (page) => page.addInitScript(() => {
+      const { Worker } = globalThis;
+      globalThis.workers = [];
+      globalThis.Worker = class extends Worker { constructor(...args) { super(...args); globalThis.workers.push(this); } };
+    }),
+  }, async (page) => {
+    await page.click('#step');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
+    await page.evaluate(() => { globalThis.workers[0].terminate(); globalThis.workers[0].dispatchEvent(new ErrorEvent('error', { message: 'gone' })); });
+    await page.click('#step');
+    await page.waitForSelector('#notice:visible');
+    assert.match(await page.textContent('#notice'), /Press R/);
+    await page.keyboard.press('r');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 0 && document.getElementById('notice').hidden);
+    await page.click('#step');
+    await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
   });
 });
 
@@ -410,6 +606,8 @@ describe('for everybody', () => {
   for (const colorScheme of ['light', 'dark']) {
     onPage(`no accessibility violation, ${colorScheme}`, { colorScheme, query: SMALL, viewport: WIDE }, async (page) => {
       await audit(page, 'start');
+      const strip = await page.locator('.strip').boundingBox();
+      assert.ok(strip.height < 50, `the strip is one row: ${strip.height}`);
       await page.click('#step');
       await page.click('#help');
       await audit(page, 'help');
@@ -436,6 +634,7 @@ test('without COOP and COEP it runs on one thread', async () => {
       assert.equal(await page.evaluate(() => crossOriginIsolated), false);
       await page.selectOption('#pace', '0');
       await page.click('#unfold');
+      assert.equal(await page.evaluate(() => globalThis.foldfreePage.mode.page.foldfree.threads), 1);
       await rest(page);
       assert.equal((await status(page)).inverted, 0);
     });

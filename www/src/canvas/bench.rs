@@ -19,6 +19,9 @@ const FRAME_BUDGET: usize = 192 << 20;
 /// deeper cannot be seen, and painting it would stop a graphics card.
 const MOST_LAYERS: usize = 24;
 
+/// Iterates, the newest, whose phases are kept: a person may drag for hours.
+const MOST_PHASES: usize = 5000;
+
 /// Earlier runs kept as curves.
 const MOST_EARLIER_RUNS: usize = 6;
 
@@ -248,7 +251,7 @@ impl Bench {
             return;
         }
         self.frames.push(self.run.records.len(), map);
-        self.run.records.push(record);
+        self.keep(record);
         if self.run.records.len() == 1 {
             self.show(0);
         }
@@ -257,7 +260,15 @@ impl Bench {
     /// Adds an iterate of which only the numbers are known.
     pub fn push_numbers(&mut self, record: Record) {
         if !self.run.records.is_empty() {
-            self.run.records.push(record);
+            self.keep(record);
+        }
+    }
+
+    fn keep(&mut self, record: Record) {
+        let records = &mut self.run.records;
+        records.push(record);
+        if let Some(old) = records.len().checked_sub(MOST_PHASES + 1) {
+            records[old].phases = Vec::new();
         }
     }
 

@@ -149,6 +149,14 @@ impl BenchHandle {
         self.body(|body| body.selected = usize::try_from(handle).ok());
     }
 
+    /// The vertex that keys would pin; a number that is none for none.
+    #[wasm_bindgen(js_name = setCursor)]
+    pub fn set_cursor(&self, vertex: u32) {
+        self.body(|body| {
+            body.cursor = Some(vertex).filter(|v| (*v as usize) < body.solid.vertices);
+        });
+    }
+
     /// Where vertices are to go: vertices (k) and their targets (k×3).
     #[wasm_bindgen(js_name = setTargets)]
     pub fn set_targets(&self, vertices: &[u32], positions: &[f64]) {

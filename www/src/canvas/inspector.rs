@@ -259,7 +259,7 @@ impl Column<'_> {
         let nouns = self.bench.nouns();
         let energy = number(record.energy, 7);
         if self.bench.body.is_some() {
-            self.pair("energy", &energy, "Elastic energy, in the unit of the moduli times volume; relative for materials without moduli. While tetrahedra are inverted it is that of the local variables Z.");
+            self.pair("energy (relative)", &energy, "Elastic energy over Young’s modulus times the volume at rest; over the volume alone for materials without moduli. While tetrahedra are inverted it is that of the local variables Z.");
         } else {
             let isometry = if self.bench.energy == "arap" {
                 "0"
@@ -289,11 +289,15 @@ impl Column<'_> {
             &range,
             "The least and the greatest factor by which a length is scaled (relative).",
         );
-        self.pair(
-            "gradient",
-            &number(record.gradient_norm, 3),
-            "Length of the gradient of the energy.",
-        );
+        let (name, hint) = if self.bench.body.is_some() {
+            (
+                "gradient (relative)",
+                "Length of the gradient of the energy: all forces that are left, over Young’s modulus (where there is one) times the area of one face of a cube as large as the solid.",
+            )
+        } else {
+            ("gradient", "Length of the gradient of the energy.")
+        };
+        self.pair(name, &number(record.gradient_norm, 3), hint);
         self.pair(
             "time",
             &format!("{} s", number(record.seconds, 3)),

@@ -13,7 +13,10 @@ pub enum Field {
 }
 
 /// Stress at which the ramp begins and ends, relative.
-const STRESS: [f64; 2] = [0.01, 1.0];
+const STRESS: [f64; 2] = [0.01, 10.0];
+
+/// Stretch at which its ramp ends; it begins at 1. An elastic solid rarely goes further.
+const STRETCH: f64 = 2.0;
 
 /// Volume ratio at which its ramp ends; it begins at the inverse.
 const VOLUME: f64 = 2.0;
@@ -41,13 +44,7 @@ impl Field {
     /// Ticks of the legend.
     pub fn ticks(self) -> &'static [(f64, &'static str)] {
         match self {
-            Self::Stretch => &[
-                (1.0, "1"),
-                (1.5, "1.5"),
-                (2.0, "2"),
-                (3.0, "3"),
-                (4.0, "4+"),
-            ],
+            Self::Stretch => &[(1.0, "1"), (1.2, "1.2"), (1.5, "1.5"), (2.0, "2+")],
             Self::Volume => &[
                 (0.5, "½−"),
                 (0.71, "0.7"),
@@ -55,14 +52,19 @@ impl Field {
                 (1.4, "1.4"),
                 (2.0, "2+"),
             ],
-            Self::Stress => &[(0.01, "1 %"), (0.1, "10 %"), (1.0, "100 %+")],
+            Self::Stress => &[
+                (0.01, "1 %"),
+                (0.1, "10 %"),
+                (1.0, "100 %"),
+                (10.0, "1000 %+"),
+            ],
         }
     }
 
     /// Position on the ramp, logarithmic; above 1 where the ramp ends before the value.
     pub fn position(self, value: f64) -> f32 {
         let (low, high) = match self {
-            Self::Stretch => (1.0, crate::colour::DISTORTION_END),
+            Self::Stretch => (1.0, STRETCH),
             Self::Volume => (1.0 / VOLUME, VOLUME),
             Self::Stress => (STRESS[0], STRESS[1]),
         };

@@ -86,6 +86,11 @@ pub fn draw(
     if newest {
         targets(painter, body, positions, bench, place);
     }
+    if let Some(v) = body.cursor {
+        let ring = place(at(positions, v));
+        painter.circle_stroke(ring, 9.0, Stroke::new(4.0, ground));
+        painter.circle_stroke(ring, 9.0, Stroke::new(2.2, accent));
+    }
     if let Some(v) = body.over.filter(|_| body.grab.is_none()) {
         let ring = place(at(positions, v));
         painter.circle_stroke(ring, 6.0, Stroke::new(3.0, ground));
@@ -176,4 +181,15 @@ pub fn plane_outline(painter: &Painter, rect: Rect, lens: &Lens, bench: &Bench, 
     ];
     let stroke = Stroke::new(1.0, style::colour(bench.theme.quiet).gamma_multiply(0.8));
     painter.extend(Shape::dashed_line(&corners, stroke, 4.0, 4.0));
+    // Its name stands under its lowest corner, which sticks out of the solid.
+    let Some(corner) = corners.into_iter().max_by(|a, b| a.y.total_cmp(&b.y)) else {
+        return;
+    };
+    let name = ["cut across x", "cut across y", "cut across z"][cut.axis.min(2)];
+    let (x, y) = (corner.x, corner.y + 12.0);
+    let at = egui::pos2(
+        x.clamp(rect.left() + 14.0, rect.right() - 82.0),
+        y.clamp(rect.top() + 34.0, rect.bottom() - 34.0),
+    );
+    style::label(painter, bench, at, egui::Align2::LEFT_TOP, name, true);
 }

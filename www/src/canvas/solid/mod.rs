@@ -61,6 +61,8 @@ pub struct Body {
     pub handles: Vec<Vec<u32>>,
     /// The handle keys act on.
     pub selected: Option<usize>,
+    /// The vertex that keys would pin.
+    pub cursor: Option<u32>,
     /// Where vertices are to go.
     pub targets: Vec<(u32, Vec3)>,
     /// The drag under way.

@@ -106,7 +106,9 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
             .drag(Vec2::new(d.x, d.y), rect.size().min_elem());
     } else if response.drag_started() {
         body.grab = Some(begin(bench, &body, lens, by_main, shift, origin, local));
-        if let (Some(Grab::Vertices(_, from)), true) = (body.grab, turning) {
+        // Only a handle can be turned; the skin is pulled, whatever key is held.
+        let handle = matches!(bench.events.last(), Some(Event::GrabHandle(_)));
+        if let (Some(Grab::Vertices(_, from)), true) = (body.grab, turning && handle) {
             body.grab = Some(Grab::Turn(from));
         }
     }

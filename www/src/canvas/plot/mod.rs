@@ -1,4 +1,7 @@
-//! Energy, worst distortion and inverted elements against iteration or time, on a log scale.
+//! Energy, worst distortion and inverted elements against iteration or time, on a log scale; the worst
+//! stretch of a solid on a log scale of its own, at the right.
+
+mod names;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
@@ -7,7 +10,7 @@ use super::style;
 use crate::colour::{CurveStyle, VERMILION, curve_style};
 use crate::history::Record;
 use crate::scale::{LogAxis, linear_ticks, number, power_of_ten};
-use crate::words::{energy_caption, method_name};
+use crate::words::energy_caption;
 
 /// The least relative gap that is drawn.
 const LEAST_GAP: f64 = 1e-12;
@@ -22,7 +25,12 @@ struct Frame {
     seconds: bool,
     gap: Option<f64>,
     floor: f32,
+    /// Where the axis of the worst stretch ends, where it has one of its own; it begins at 1.
+    stretch: Option<f64>,
 }
+
+/// The ends an axis of stretches may have; their square roots are round, too.
+const STRETCH_ENDS: [f64; 7] = [1.21, 1.44, 2.25, 4.0, 9.0, 25.0, 100.0];
 
 impl Frame {
     fn x(&self, record: &Record) -> f32 {
@@ -40,6 +48,15 @@ impl Frame {
             .map(|t| self.area.bottom() - self.floor - t * (self.area.height() - self.floor))
     }
 
+    /// Height of a worst distortion, on its own axis if it has one.
+    fn worst(&self, value: f64) -> Option<f32> {
+        let Some(end) = self.stretch else {
+            return self.y(value);
+        };
+        let t = (value.max(1.0).ln() / end.ln()).min(1.0) as f32;
+        Some(self.area.bottom() - self.floor - t * (self.area.height() - self.floor))
+    }
+
     fn energy(&self, record: &Record) -> Option<f64> {
         let value = match self.gap {
             None => record.energy,
@@ -54,12 +71,10 @@ impl Frame {
     }
 
     /// A curve of the records, at most one point a pixel (the worst of them), broken where undefined.
-    fn curve(&self, records: &[Record], value: impl Fn(&Record) -> Option<f64>) -> Vec<Vec<Pos2>> {
+    fn curve(&self, records: &[Record], height: impl Fn(&Record) -> Option<f32>) -> Vec<Vec<Pos2>> {
         let mut pieces: Vec<Vec<Pos2>> = vec![Vec::new()];
         for record in records {
-            let point = value(record)
-                .and_then(|v| self.y(v))
-                .map(|y| pos2(self.x(record), y));
+            let point = height(record).map(|y| pos2(self.x(record), y));
             match (point, pieces.last_mut()) {
                 (Some(p), Some(piece)) => match piece.last_mut() {
                     Some(last)
@@ -86,7 +101,8 @@ fn piece_is_dense(count: usize, width: f32) -> bool {
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     let painter = ui.painter().clone();
     let (theme, text) = (bench.theme, bench.text);
-    let margin = [54.0 * text, 34.0 * text, 112.0 * text, 26.0 * text];
+    let names = if bench.body.is_some() { 142.0 } else { 112.0 };
+    let margin = [54.0 * text, 34.0 * text, names * text, 26.0 * text];
     let area = Rect::from_min_max(
         rect.min + vec2(margin[0], margin[1]),
         rect.max - vec2(margin[2].min(0.3 * rect.width()), margin[3]),
@@ -102,7 +118,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         let style = curve_style(&run.method);
         draw(
             &painter,
-            &frame.curve(&run.records, |r| frame.energy(r)),
+            &frame.curve(&run.records, |r| frame.energy(r).and_then(|v| frame.y(v))),
             style,
             1.2,
             theme.dark,
@@ -114,7 +130,9 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     if frame.gap.is_none() {
         let quiet = style::colour(theme.quiet);
         let worst = frame.curve(records, |r| {
-            Some(r.worst_distortion()).filter(|v| v.is_finite())
+            Some(r.worst_distortion())
+                .filter(|v| v.is_finite())
+                .and_then(|v| frame.worst(v))
         });
         for piece in &worst {
             painter.extend(Shape::dashed_line(piece, Stroke::new(1.2, quiet), 5.0, 3.0));
@@ -129,16 +147,27 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         }
     }
     let own = curve_style(&bench.run.method);
-    let curves = frame.curve(records, |r| frame.energy(r));
+    let curves = frame.curve(records, |r| frame.energy(r).and_then(|v| frame.y(v)));
     draw(&painter, &curves, own, 2.0, theme.dark, 1.0);
     if let Some(p) = curves.iter().rev().find_map(|piece| piece.last()) {
         let ink = if theme.dark { own.dark } else { own.light };
         ends.push((p.y, "energy", style::colour(ink)));
     }
     if frame.gap.is_none() {
-        labels(&painter, area, &mut ends, text);
+        let ticks = if frame.stretch.is_some() {
+            34.0 * text
+        } else {
+            0.0
+        };
+        names::beside(
+            &painter,
+            area.right() + ticks,
+            area.bottom(),
+            &mut ends,
+            text,
+        );
     } else {
-        name_ends(&painter, &frame, bench);
+        names::of_methods(&painter, &frame, bench);
     }
     cursor(ui, rect, &frame, bench);
 }
@@ -233,6 +262,7 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
         seconds,
         gap,
         floor: 0.0,
+        stretch: None,
     };
     let mut values: Vec<f64> = runs()
         .flat_map(|run| run.records.iter().filter_map(|r| frame.energy(r)))
@@ -244,8 +274,17 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
     }
     if gap.is_none() {
         frame.floor = 17.0 * bench.text;
-        for record in &bench.run.records {
-            values.extend([record.worst_distortion(), f64::from(record.inverted)]);
+        let records = &bench.run.records;
+        values.extend(records.iter().map(|r| f64::from(r.inverted)));
+        let worst = records.iter().map(Record::worst_distortion);
+        if bench.body.is_some() {
+            // Next to energies of many decades a stretch between 1 and 2 would be a flat line.
+            let most = worst.filter(|v| v.is_finite()).reduce(f64::max);
+            let end = |most| STRETCH_ENDS.into_iter().find(|end| *end >= most);
+            frame.stretch =
+                most.map(|most| end(most).unwrap_or(STRETCH_ENDS[STRETCH_ENDS.len() - 1]));
+        } else {
+            values.extend(worst);
         }
     }
     frame.axis = LogAxis::over(values);
@@ -269,6 +308,24 @@ fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
                 font.clone(),
                 quiet,
             );
+        }
+    }
+    if let Some(end) = frame.stretch {
+        let middle = format!("{}", (100.0 * end.sqrt()).round() / 100.0);
+        for (value, name) in [(1.0, "1"), (end.sqrt(), &middle), (end, &format!("{end}"))] {
+            if let Some(y) = frame.worst(value) {
+                painter.line_segment(
+                    [pos2(area.right(), y), pos2(area.right() + 4.0, y)],
+                    Stroke::new(1.0, quiet),
+                );
+                painter.text(
+                    pos2(area.right() + 7.0, y),
+                    Align2::LEFT_CENTER,
+                    name,
+                    font.clone(),
+                    quiet,
+                );
+            }
         }
     }
     if frame.floor > 0.0 {
@@ -361,60 +418,6 @@ fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
         for record in records {
             painter.circle_filled(place(record), 2.4, ink);
         }
-    }
-}
-
-/// Methods' names where their curves end (when only energies are plotted), none over another.
-fn name_ends(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
-    let mut taken: Vec<Rect> = Vec::new();
-    for run in [&bench.run].into_iter().chain(&bench.earlier) {
-        let end = run.records.iter().rev().find_map(|r| {
-            let y = frame.energy(r).and_then(|v| frame.y(v))?;
-            Some(pos2(frame.x(r) + 6.0, y))
-        });
-        let Some(at) = end else { continue };
-        let ink = curve_style(&run.method);
-        let ink = style::colour(if bench.theme.dark {
-            ink.dark
-        } else {
-            ink.light
-        });
-        let font = style::regular(style::SMALL * bench.text);
-        let galley = painter.layout_no_wrap(method_name(&run.method).to_owned(), font, ink);
-        let mut rect = Align2::LEFT_CENTER.anchor_size(at, galley.size());
-        while let Some(other) = taken.iter().find(|other| other.intersects(rect)) {
-            rect = rect.translate(vec2(0.0, other.top() - rect.bottom() - 1.0));
-        }
-        painter.rect_filled(rect, 2.0, style::colour(bench.theme.ground));
-        painter.galley(rect.min, galley, ink);
-        taken.push(rect);
-    }
-}
-
-/// Names at the ends of the curves, moved apart until none overlaps.
-fn labels(painter: &egui::Painter, area: Rect, ends: &mut [(f32, &str, Color32)], text: f32) {
-    let height = 14.0 * text;
-    ends.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for i in 1..ends.len() {
-        ends[i].0 = ends[i].0.max(ends[i - 1].0 + height);
-    }
-    let low = area.bottom() + 4.0;
-    for i in (0..ends.len()).rev() {
-        let most = if i + 1 < ends.len() {
-            ends[i + 1].0 - height
-        } else {
-            low
-        };
-        ends[i].0 = ends[i].0.min(most);
-    }
-    for (y, name, ink) in ends.iter() {
-        painter.text(
-            pos2(area.right() + 8.0, *y),
-            Align2::LEFT_CENTER,
-            *name,
-            style::regular(style::SMALL * text),
-            *ink,
-        );
     }
 }
 

@@ -1,0 +1,22 @@
+// What the inspector says of the solid on the bench. No DOM here.
+import { ending, number, whole } from './words.js';
+
+/** Pairs of names and values. `title` is the solid's; `threads` how many there are. */
+export function factsOf(session, { title, threads }) {
+  const { problem, certificate, newest, solid } = session;
+  const pairs = [
+    ['solid', title],
+    ['vertices', whole(solid.positions.length / 3)],
+    ['held', `${whole(problem.pins)} vertices`],
+    ['setup', `${number(1000 * problem.setupSeconds, 3)} ms`],
+    ['threads', String(threads)],
+    ...problem.notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
+  ];
+  if (session.finished && newest.iteration > 0) pairs.push(['ended', `${ending(newest)} after ${newest.iteration}`]);
+  if (certificate) {
+    const wrong = certificate.inverted.length + certificate.degenerate.length;
+    pairs.push(['certificate', wrong === 0 ? 'no tetrahedron inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
+    if (wrong === 0) pairs.push(['', certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)']);
+  }
+  return pairs;
+}
