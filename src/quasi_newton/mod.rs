@@ -5,7 +5,7 @@
 //! stiffness of the material at rest, factored once; then halving from the full step until the energy
 //! falls as Armijo's rule demands. Elements are evaluated by the kernels of [`crate::wrapd`].
 
-mod evaluation;
+pub(crate) mod evaluation;
 mod options;
 mod solver;
 
