@@ -127,6 +127,15 @@ impl BlockSum {
         }
     }
 
+    /// Adds `factor` · a aᵀ at a vertex, in dimension 2.
+    pub fn add_product(&mut self, vertex: usize, a: [f64; 2], factor: f64) {
+        let (offsets, _, values) = self.matrix.csc_data_mut();
+        let (first, second) = (offsets[2 * vertex], offsets[2 * vertex + 1]);
+        values[first] += factor * a[0] * a[0];
+        values[first + 1] += factor * a[0] * a[1];
+        values[second] += factor * a[1] * a[1];
+    }
+
     /// The mean of the d diagonal entries of each vertex.
     pub fn mean_diagonal(&self, mean: &mut [f64]) {
         let d = self.dimension;

@@ -79,7 +79,7 @@ pub fn volume_coefficients(e: [[f64; 3]; 3], g: [[f64; 3]; 3]) -> [f64; 4] {
     ]
 }
 
-/// `fraction` of the way along `direction` to the first degenerate element, at most 1. Positions and
+/// `fraction` of the way along `direction` to the first degenerate element, at most `most`. Positions and
 /// direction by slot, interleaved. `bounds` has room for one number a block.
 ///
 /// An element that is degenerate already to rounding says nothing: the evaluation of the step will.
@@ -89,20 +89,20 @@ pub fn step_bound(
     positions: &[f64],
     direction: &[f64],
     fraction: f64,
+    most: f64,
     bounds: &mut [f64],
 ) -> f64 {
     parallel::for_each_chunk(bounds, 1, |i, bound| {
         let count = BLOCK.min(elements - i * BLOCK);
         bound[0] = match blocks[i].vertices.len() {
-            3 => planar(&blocks[i], count, positions, direction, fraction),
-            _ => solid(&blocks[i], count, positions, direction, fraction),
+            3 => planar(&blocks[i], count, positions, direction, most / fraction),
+            _ => solid(&blocks[i], count, positions, direction, most / fraction),
         };
     });
-    bounds.iter().copied().fold(1.0, f64::min)
+    most * bounds.iter().copied().fold(1.0, f64::min)
 }
 
-/// The edges from the first corner, and those at the end of the way of 1/fraction steps: a root at u of
-/// this way allows a step of u.
+/// The edges from the first corner, and those after `way` steps.
 #[inline(always)]
 fn edges<const D: usize>(
     block: &Block,
@@ -133,11 +133,11 @@ fn least_root<const N: usize>(least: f64, mut coefficients: [f64; N], rest_sign:
     f64::min(least, first_root(coefficients))
 }
 
-fn planar(block: &Block, count: usize, x: &[f64], direction: &[f64], fraction: f64) -> f64 {
+fn planar(block: &Block, count: usize, x: &[f64], direction: &[f64], way: f64) -> f64 {
     let (x, direction) = (x.as_chunks::<2>().0, direction.as_chunks::<2>().0);
     let mut least = f64::INFINITY;
     for e in 0..count {
-        let (before, after) = edges(block, e, x, direction, fraction.recip());
+        let (before, after) = edges(block, e, x, direction, way);
         let row = |c: usize| block.inverse[c][e];
         let sign = (row(0) * row(3) - row(1) * row(2)).signum();
         least = least_root(least, area_coefficients(before, after), sign);
@@ -145,11 +145,11 @@ fn planar(block: &Block, count: usize, x: &[f64], direction: &[f64], fraction: f
     least
 }
 
-fn solid(block: &Block, count: usize, x: &[f64], direction: &[f64], fraction: f64) -> f64 {
+fn solid(block: &Block, count: usize, x: &[f64], direction: &[f64], way: f64) -> f64 {
     let (x, direction) = (x.as_chunks::<3>().0, direction.as_chunks::<3>().0);
     let mut least = f64::INFINITY;
     for e in 0..count {
-        let (before, after) = edges(block, e, x, direction, fraction.recip());
+        let (before, after) = edges(block, e, x, direction, way);
         let column = |c: usize| core::array::from_fn(|r| block.inverse[3 * c + r][e]);
         let rest = [column(0), column(1), column(2)];
         let sign = volume_coefficients(rest, rest)[0].signum();

@@ -1,16 +1,27 @@
 //! The matrices of the elements, whose sum is what a step solves with.
 
 use crate::energy::Energy;
-use crate::energy::hessian::{MOST, Square, projected_hessian};
+use crate::energy::hessian::{Eigensystem, MOST, Square};
 use crate::space::{Components, Space};
 use crate::wrapd::block::Block;
 use core::marker::PhantomData;
 
-/// Positive semidefinite matrices of the elements, in place of their Hessians.
+/// Matrices of the elements: their Hessians, or positive semidefinite ones in their place.
 pub trait Curvature: Send + Sync {
     /// Of the first `count` elements of a block at the F of its last evaluation, times the measure: element
     /// after element the d×d blocks, row by row, of the pairs of corners (0,0), (1,0), (1,1), (2,0), ….
-    fn fill(&self, block: &Block, count: usize, out: &mut [f64]);
+    fn fill(&self, block: &Block, count: usize, kind: Kind, out: &mut [f64]);
+    /// Is the Hessian itself another matrix?
+    fn has_exact(&self) -> bool;
+}
+
+/// Which matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Positive semidefinite.
+    Semidefinite,
+    /// The Hessian, where the method knows it.
+    Exact,
 }
 
 /// Numbers an element has in [`Curvature::fill`].
@@ -21,17 +32,25 @@ pub fn stride(dimension: usize) -> usize {
 /// A matrix on the entries of F for each element: what most methods differ in.
 pub trait OfGradient<S: Space>: Send + Sync {
     /// At F.
-    fn at(&self, f: S::Gradient<f64>) -> Square;
+    fn at(&self, f: S::Gradient<f64>, kind: Kind) -> Square;
+    /// Do the kinds differ?
+    const EXACT: bool;
 }
 
 /// Takes a matrix on F to the corners, element by element.
 pub struct OnCorners<S, M>(pub M, pub PhantomData<S>);
 
 impl<S: Space, M: OfGradient<S>> Curvature for OnCorners<S, M> {
-    fn fill(&self, block: &Block, count: usize, out: &mut [f64]) {
+    fn has_exact(&self) -> bool {
+        M::EXACT
+    }
+
+    fn fill(&self, block: &Block, count: usize, kind: Kind, out: &mut [f64]) {
         let (d, k) = (S::DIM, S::STRETCHES);
         for (e, out) in out.chunks_exact_mut(stride(d)).take(count).enumerate() {
-            let h = self.0.at(S::Gradient::from_fn(|c| block.gradient[c][e]));
+            let h = self
+                .0
+                .at(S::Gradient::from_fn(|c| block.gradient[c][e]), kind);
             let hats = hat_gradients(block, e, k);
             // ∂F/∂x_v maps y to y ⊗ g_v: for each corner H times it
             let mut products = [[[0.0; 3]; MOST]; 4];
@@ -76,7 +95,13 @@ fn hat_gradients(block: &Block, e: usize, k: usize) -> [[f64; 3]; 4] {
 pub struct Projected<E>(pub E);
 
 impl<S: Space, E: Energy<S>> OfGradient<S> for Projected<E> {
-    fn at(&self, f: S::Gradient<f64>) -> Square {
-        projected_hessian::<S, E>(self.0, f)
+    const EXACT: bool = true;
+
+    fn at(&self, f: S::Gradient<f64>, kind: Kind) -> Square {
+        let least = match kind {
+            Kind::Semidefinite => 0.0,
+            Kind::Exact => f64::NEG_INFINITY,
+        };
+        Eigensystem::<S>::new(self.0, f).map(|value| value.max(least))
     }
 }

@@ -10,8 +10,13 @@ pub struct NewtonOptions {
     pub fraction: f64,
     /// c of Armijo's rule E(x + t d) ≤ E(x) + c t ∇E·d, in (0, ½).
     pub decrease: f64,
-    /// What is added to the diagonal at first, relative to it: rigid motions leave the matrix singular.
+    /// What is added to the diagonal at first, relative to it: rigid motions leave the matrix singular. It
+    /// grows where it is too small. More than rounding slows down maps that have to unroll: how a long
+    /// strip bends is as soft, beside how a triangle stretches, as the strip is long.
     pub shift: f64,
+    /// The longest step, from 1: a majorizer is stiffer than what it majorizes, so that the energy often
+    /// goes on falling beyond its minimum.
+    pub longest: f64,
     /// Stop when |ΔE|/(|E| + floor of the energy) or |∇E| is below this.
     pub tolerance: f64,
     /// Stop after this many iterations.
@@ -23,7 +28,8 @@ impl Default for NewtonOptions {
         Self {
             fraction: 0.8,
             decrease: 1e-4,
-            shift: 1e-9,
+            longest: 2.0,
+            shift: 1e-14,
             tolerance: 1e-11,
             max_iterations: 5000,
         }
@@ -52,6 +58,11 @@ impl NewtonOptions {
                 "shift",
                 between(self.shift, 0.0, 1.0),
                 "must be between 0 and 1",
+            ),
+            (
+                "longest",
+                self.longest >= 1.0 && self.longest.is_finite(),
+                "must be a finite number, at least 1",
             ),
             (
                 "tolerance",

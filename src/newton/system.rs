@@ -1,7 +1,7 @@
 //! The matrix of a step and its factor.
 
 use super::NewtonOptions;
-use super::curvature::{Curvature, stride};
+use super::curvature::{Curvature, Kind, stride};
 use crate::geometry::{Elimination, RestShape};
 use crate::linalg::{BlockSum, Cholesky, NotPositiveDefinite};
 use crate::optim::BuildError;
@@ -83,13 +83,13 @@ impl NewtonSystem {
     }
 
     /// Sets the values at the F of the last evaluation.
-    pub fn assemble(&mut self, evaluation: &Evaluation, curvature: &dyn Curvature) {
+    pub fn assemble(&mut self, evaluation: &Evaluation, curvature: &dyn Curvature, kind: Kind) {
         let d = evaluation.shape.dimension;
         let elements = evaluation.elements();
         let blocks = &evaluation.blocks;
         parallel::for_each_chunk(&mut self.blocks, BLOCK * stride(d), |i, out| {
             let count = BLOCK.min(elements - i * BLOCK);
-            curvature.fill(&blocks[i], count, out);
+            curvature.fill(&blocks[i], count, kind, out);
         });
         let springs = evaluation.terms.as_ref().map(|t| &t.spring_stiffness);
         let proximal = self.proximal;
@@ -120,6 +120,25 @@ impl NewtonSystem {
                 Err(_) => wanted = (wanted * GROWTH).min(1.0),
             }
         }
+    }
+
+    /// Factors the matrix as it is, but for the least shift and, where the plane can turn about a vertex,
+    /// for a stiffness against moving one vertex along the given vector. Succeeds only if the result is
+    /// positive definite.
+    pub fn factorize_exact(
+        &mut self,
+        held: Option<(usize, [f64; 2])>,
+    ) -> Result<(), NotPositiveDefinite> {
+        let shift = self.least_shift;
+        let (diagonal, rest) = (&self.diagonal, &self.rest_diagonal);
+        self.matrix
+            .add_to_diagonal(|v| shift * diagonal[v].abs().max(rest[v]));
+        if let Some((vertex, along)) = held {
+            let stiffness = diagonal[vertex].abs().max(rest[vertex]);
+            self.matrix.add_product(vertex, along, stiffness);
+        }
+        self.shift = shift;
+        self.factor.factorize(self.matrix.matrix())
     }
 
     /// The shift of the last factor,
