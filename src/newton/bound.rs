@@ -10,43 +10,100 @@
 use crate::parallel;
 use crate::wrapd::block::{BLOCK, Block};
 
-/// Rounds at most; a double root needs one for each bit.
-const MOST_ROUNDS: usize = 200;
+/// Rounds at most: a double root needs a few for each bit.
+const MOST_ROUNDS: usize = 400;
+
+/// Intervals to the right that can wait.
+const MOST_WAITING: usize = 64;
+
+/// Below this part of an interval a safe step is short, and the interval is halved, too.
+const SHORT: f64 = 0.25;
+
+/// A polynomial on an interval of [0, 1].
+#[derive(Clone, Copy)]
+struct Piece<const N: usize> {
+    /// Its Bernstein coefficients there.
+    b: [f64; N],
+    start: f64,
+    width: f64,
+}
+
+impl<const N: usize> Piece<N> {
+    /// Left and right of the part `u` of the interval, by de Casteljau.
+    fn split(&self, u: f64) -> [Self; 2] {
+        let mut right = self.b;
+        let mut left = self.b;
+        for round in 1..N {
+            for i in 0..N - round {
+                right[i] += u * (right[i + 1] - right[i]);
+            }
+            left[round] = right[0];
+        }
+        let middle = u * self.width;
+        [
+            Self {
+                b: left,
+                start: self.start,
+                width: middle,
+            },
+            Self {
+                b: right,
+                start: self.start + middle,
+                width: self.width - middle,
+            },
+        ]
+    }
+
+    /// The part of the interval before which there is no root: the lower hull of the coefficients meets
+    /// zero where the first of the lines from above to below does.
+    fn safe(&self) -> f64 {
+        let b = &self.b;
+        let mut safe = f64::INFINITY;
+        for j in (1..N).filter(|&j| !(b[j] > 0.0)) {
+            for i in (0..j).filter(|&i| b[i] > 0.0) {
+                let place = i as f64 + (j - i) as f64 * (b[i] / (b[i] - b[j]));
+                safe = f64::min(safe, place / (N - 1) as f64);
+            }
+        }
+        safe
+    }
+}
 
 /// The smallest root in (0, 1] of the polynomial of degree N − 1 with these Bernstein coefficients on [0, 1],
 /// or infinity. Never above the root by more than rounding. The first coefficient, the value at 0, has to be
 /// positive; if it is not, the answer is 0.
 pub fn first_root<const N: usize>(coefficients: [f64; N]) -> f64 {
-    let mut b = coefficients;
-    let mut reached = 0.0;
+    let mut piece = Piece {
+        b: coefficients,
+        start: 0.0,
+        width: 1.0,
+    };
+    let mut waiting = [piece; MOST_WAITING];
+    let mut count = 0;
     for _ in 0..MOST_ROUNDS {
-        if !(b[0] > 0.0) {
-            return reached;
+        if !(piece.b[0] > 0.0) {
+            return piece.start;
         }
-        // where the lines from the first coefficient down to the others meet zero
-        let mut safe = f64::INFINITY;
-        for i in 1..N {
-            if !(b[i] > 0.0) {
-                let place = i as f64 / (N - 1) as f64;
-                safe = f64::min(safe, place * (b[0] / (b[0] - b[i])));
-            }
-        }
+        let safe = piece.safe();
         if safe == f64::INFINITY {
-            return f64::INFINITY;
-        }
-        let advance = safe * (1.0 - reached);
-        if !(advance > 1e-15 * reached) {
-            return reached;
-        }
-        reached += advance;
-        // de Casteljau: the coefficients on what is left
-        for round in 1..N {
-            for i in 0..N - round {
-                b[i] += safe * (b[i + 1] - b[i]);
+            // on to what lies right of it
+            match count {
+                0 => return f64::INFINITY,
+                _ => count -= 1,
             }
+            piece = waiting[count];
+            continue;
+        }
+        if !(safe * piece.width > 1e-15 * piece.start) || count == MOST_WAITING {
+            return piece.start;
+        }
+        piece = piece.split(safe)[1];
+        if safe < SHORT {
+            [piece, waiting[count]] = piece.split(0.5);
+            count += 1;
         }
     }
-    reached
+    piece.start
 }
 
 /// The Bernstein coefficients of det(E + u (G − E)) on u ∈ [0, 1], for 2×2 matrices by columns.
@@ -83,7 +140,7 @@ pub fn volume_coefficients(e: [[f64; 3]; 3], g: [[f64; 3]; 3]) -> [f64; 4] {
 /// direction by slot, interleaved. `bounds` has room for one number a block.
 ///
 /// An element that is degenerate already to rounding says nothing: the evaluation of the step will.
-pub fn step_bound(
+pub(crate) fn step_bound(
     blocks: &[Block],
     elements: usize,
     positions: &[f64],

@@ -1,16 +1,20 @@
 //! The iteration.
 
+mod attempts;
+mod handles;
+mod search;
+
+use self::attempts::Tried;
 use super::NewtonOptions;
-use super::bound::step_bound;
 use super::curvature::{Curvature, Kind, OnCorners, Projected};
 use super::majorization::CompositeMajorization;
 use super::system::NewtonSystem;
 use crate::energy::{Energy, SymmetricDirichlet};
 use crate::geometry::Elimination;
-use crate::optim::vectors::{dot, set_combination};
+use crate::optim::vectors::dot;
 use crate::optim::{
     BuildError, Criterion, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver,
-    Spring, Status, StepReport, Stopwatch,
+    Status, StepReport, Stopwatch,
 };
 use crate::parallel;
 use crate::quasi_newton::evaluation::{Evaluation, Value};
@@ -19,32 +23,11 @@ use crate::wrapd::Problem;
 use crate::wrapd::external::Terms;
 use core::marker::PhantomData;
 
-/// Most halvings of a step.
-const MOST_HALVINGS: u32 = 60;
-
 /// A change of the energy below this part of the numbers it is computed from is rounding error.
 const ROUNDING: f64 = 1e-14;
 
-/// Secant steps of a line search.
-const MOST_SECANTS: u32 = 2;
-
-/// They are worth their evaluation where the slope that is left is this part of the first,
-const STEEP: f64 = 0.2;
-
-/// or, of the other sign, this part,
-const OVERSHOT: f64 = 0.5;
-
-/// and go no further at once than this many times the step so far.
-const MOST_STRETCH: f64 = 4.0;
-
 /// The exact Hessian is tried from where a step changes the energy by less than this part,
 const NEAR: f64 = 0.1;
-
-/// and again after at most this many steps where it was not definite.
-const LONGEST_WAIT: usize = 16;
-
-/// Larger shifts tried where no step along a direction lowers the energy.
-const MOST_SHIFTS: u32 = 5;
 
 /// Newton's method with a positive semidefinite matrix in place of the Hessian, steps that invert nothing,
 /// and a line search.
@@ -89,14 +72,6 @@ const PHASES: [PhaseKind; 4] = [
     PhaseKind::Evaluate,
 ];
 
-/// The end of a line search.
-struct Found {
-    step: f64,
-    value: Value,
-    /// Was the decrease demanded too small to be seen?
-    by_rounding: bool,
-}
-
 impl Newton {
     /// Composite majorization of the symmetric Dirichlet energy of a planar map.
     ///
@@ -138,6 +113,13 @@ impl Newton {
         options.validate()?;
         problem.validate_parts(S::DIM, S::STRETCHES)?;
         let n = problem.start.len() / S::DIM;
+        let first = &problem.rest.vertices[..1];
+        let floats = problem.pins.is_empty() && problem.external.is_none();
+        let problem = Problem {
+            // no energy knows where all of it is
+            pins: if floats { first } else { problem.pins },
+            ..problem
+        };
         let couplings = problem.external.map_or(&[][..], |e| &e.stiffness);
         let elimination = Elimination::with_couplings(problem.rest, n, problem.pins, couplings);
         let terms = problem.external.map(|external| {
@@ -262,107 +244,6 @@ impl Newton {
         self.rounding + ROUNDING * self.report.energy.abs() + terms
     }
 
-    /// −H⁻¹ g into `direction`; its slope along the reported energy.
-    fn descend(&mut self) -> f64 {
-        let direction = &mut self.direction[..self.unknowns];
-        set_combination((-1.0, &self.gradient), core::iter::empty(), direction);
-        self.system.solve(direction);
-        self.evaluation.shape.constants.scale * dot(direction, &self.gradient)
-    }
-
-    /// The longest step that inverts nothing, if inverting costs.
-    fn longest_step(&mut self) -> f64 {
-        let longest = self.options.longest;
-        if !self.evaluation.shape.barrier {
-            return longest;
-        }
-        step_bound(
-            &self.evaluation.blocks,
-            self.evaluation.elements(),
-            &self.x,
-            &self.direction,
-            self.options.fraction,
-            longest,
-            &mut self.bounds,
-        )
-    }
-
-    /// Evaluates a step along the direction, into `trial` and `trial_gradient`.
-    fn try_step(&mut self, step: f64) -> Value {
-        let along = core::iter::once((step, &self.direction[..self.unknowns]));
-        set_combination(
-            (1.0, &self.x[..self.unknowns]),
-            along,
-            &mut self.trial[..self.unknowns],
-        );
-        self.evaluation.at(&self.trial, &mut self.trial_gradient)
-    }
-
-    /// From the full step, if nothing is inverted so far, by halves to the first that satisfies Armijo's
-    /// rule, or, where what the rule demands is rounding error, that does not raise the energy; then by
-    /// secants on the slope nearer to the minimum along the direction. The evaluation there is in `trial` and
-    /// `trial_gradient`; the number of trials.
-    fn search(&mut self, slope: f64) -> (Option<Found>, u32) {
-        let bound = self.longest_step();
-        let mut step = bound.min(1.0);
-        let resolution = self.resolution();
-        for trials in 1..=MOST_HALVINGS {
-            let value = self.try_step(step);
-            let by_rounding = -step * slope < resolution;
-            let enough = match by_rounding {
-                true => self.report.energy,
-                false => self.report.energy + self.options.decrease * step * slope,
-            };
-            if value.energy.is_finite() && value.energy <= enough {
-                let mut found = Found {
-                    step,
-                    value,
-                    by_rounding,
-                };
-                let more = match by_rounding {
-                    true => 0,
-                    false => self.refine(&mut found, slope, bound),
-                };
-                return (Some(found), trials + more);
-            }
-            if by_rounding && -step * slope < 1e-3 * resolution {
-                return (None, trials);
-            }
-            step *= 0.5;
-        }
-        (None, MOST_HALVINGS)
-    }
-
-    /// Goes from an accepted step on, or back, to where the slope along the direction vanishes, by secants, as
-    /// long as that lowers the energy; the number of trials.
-    fn refine(&mut self, found: &mut Found, slope: f64, bound: f64) -> u32 {
-        let scale = self.evaluation.shape.constants.scale;
-        let (mut last, mut last_slope) = (0.0, slope);
-        for trials in 0..MOST_SECANTS {
-            let direction = &self.direction[..self.unknowns];
-            let here = scale * dot(direction, &self.trial_gradient);
-            let secant = found.step - here * (found.step - last) / (here - last_slope);
-            let next = match () {
-                _ if here > OVERSHOT * -slope => secant,
-                _ if here < STEEP * slope && bound > 1.01 * found.step => {
-                    let far = if secant > found.step { secant } else { bound };
-                    far.min(bound).min(MOST_STRETCH * found.step)
-                }
-                () => return trials,
-            };
-            let value = self.try_step(next);
-            if !(value.energy < found.value.energy) {
-                // back to where it was: the evaluation, too, whose F the next matrix needs
-                found.value = self.try_step(found.step);
-                return trials + 2;
-            }
-            (last, last_slope) = (found.step, here);
-            found.step = next;
-            found.value = value;
-        }
-        MOST_SECANTS
-    }
-
     /// The vertex of the first unknown that is not finite.
     fn not_finite(&self, unknowns: &[f64]) -> Option<usize> {
         let bad = unknowns.iter().position(|g| !g.is_finite())?;
@@ -392,10 +273,10 @@ impl Newton {
         });
         let tried = match self.wants_exact(iteration) {
             true => self.attempt(Kind::Exact, 0.0, iteration, &mut phases)?,
-            false => None,
+            false => Tried::default(),
         };
-        let (found, decrement) = match tried {
-            Some(tried) => tried,
+        let Tried { found, decrement } = match tried.found {
+            Some(_) => tried,
             None => self.semidefinite(iteration, &mut phases)?,
         };
 
@@ -422,8 +303,6 @@ impl Newton {
             }
             // also at a minimum to rounding, where no step is seen to lower the energy
             None => {
-                // what is inspected is the iterate, not the last trial
-                self.evaluation.at(&self.x, &mut self.trial_gradient);
                 let near = decrement.abs() < tolerance * (self.report.energy.abs() + floor);
                 self.report.status = match near && tolerance > 0.0 {
                     true => Status::Converged(Criterion::EnergyChange),
@@ -435,110 +314,6 @@ impl Newton {
         self.report.phases.clear();
         self.report.phases.extend(phases);
         Ok(())
-    }
-
-    /// Is the exact Hessian worth an attempt?
-    fn wants_exact(&self, iteration: usize) -> bool {
-        self.near && iteration >= self.exact_from && self.curvature.has_exact()
-    }
-
-    /// The step with positive semidefinite matrices of the elements: what a line search found, and the
-    /// decrease that the quadratic model promised.
-    fn semidefinite(
-        &mut self,
-        iteration: usize,
-        phases: &mut [Phase; 4],
-    ) -> Result<(Option<Found>, f64), SolveError> {
-        let mut at_least = self.system.next_shift();
-        for attempts in 1.. {
-            let tried = self.attempt(Kind::Semidefinite, at_least, iteration, phases)?;
-            let Some((found, decrement)) = tried else {
-                break;
-            };
-            let hopeless = self.report.gradient_norm == 0.0 || decrement.abs() < self.resolution();
-            let last = hopeless || attempts > MOST_SHIFTS || self.system.shift() >= 1.0;
-            if found.is_some() || last {
-                return Ok((found, decrement));
-            }
-            // where the matrix is nearly singular the direction may be nothing but rounding error
-            at_least = self.system.larger_shift();
-        }
-        Ok((None, f64::INFINITY))
-    }
-
-    /// One matrix, its factor, and a line search; nothing if the exact Hessian is not definite.
-    #[allow(clippy::type_complexity)]
-    fn attempt(
-        &mut self,
-        kind: Kind,
-        at_least: f64,
-        iteration: usize,
-        phases: &mut [Phase; 4],
-    ) -> Result<Option<(Option<Found>, f64)>, SolveError> {
-        let [local, factor, global, evaluate] = phases;
-        let add = |phase: &mut Phase, count: u32, clock: Stopwatch| {
-            phase.count += count;
-            phase.milliseconds += clock.milliseconds();
-        };
-        let clock = Stopwatch::start();
-        self.system
-            .assemble(&self.evaluation, &*self.curvature, kind);
-        add(local, 1, clock);
-        let clock = Stopwatch::start();
-        let factored = match kind {
-            Kind::Exact => self.system.factorize_exact(self.turning()).map(|()| 1),
-            Kind::Semidefinite => self.system.factorize(at_least),
-        };
-        add(factor, factored.unwrap_or(1), clock);
-        match (factored, kind) {
-            (Ok(_), Kind::Exact) => self.wait = 1,
-            (Ok(_), Kind::Semidefinite) => {}
-            (Err(_), Kind::Exact) => {
-                self.exact_from = iteration + self.wait;
-                self.wait = (2 * self.wait).min(LONGEST_WAIT);
-                return Ok(None);
-            }
-            (Err(error), _) => {
-                let pivot = error.pivot;
-                return Err(SolveError::NotPositiveDefinite { iteration, pivot });
-            }
-        }
-        let clock = Stopwatch::start();
-        let slope = self.descend();
-        add(global, 1, clock);
-        let clock = Stopwatch::start();
-        let (found, trials) = match slope < 0.0 {
-            true => self.search(slope),
-            false => (None, 0),
-        };
-        add(evaluate, trials, clock);
-        Ok(match (found, kind) {
-            (None, Kind::Exact) => None,
-            (found, _) => Some((found, -0.5 * slope)),
-        })
-    }
-
-    /// Where the plane can still turn about its only pin: the free vertex that is furthest from it, and the
-    /// direction in which it would move. The Hessian says nothing of this turn but rounding errors.
-    fn turning(&self) -> Option<(usize, [f64; 2])> {
-        let (free, pins) = self.x.split_at(self.unknowns);
-        if self.evaluation.shape.dimension != 2
-            || pins.len() != 2
-            || self.evaluation.terms.is_some()
-        {
-            return None;
-        }
-        let away = |p: &[f64; 2]| [p[0] - pins[0], p[1] - pins[1]];
-        let length = |a: [f64; 2]| (a[0] * a[0] + a[1] * a[1]).sqrt();
-        let mut furthest = (0, [0.0; 2]);
-        for (vertex, p) in free.as_chunks::<2>().0.iter().enumerate() {
-            if length(away(p)) > length(furthest.1) {
-                furthest = (vertex, away(p));
-            }
-        }
-        let (vertex, arm) = furthest;
-        let l = length(arm);
-        (l > 0.0).then(|| (vertex, [-arm[1] / l, arm[0] / l]))
     }
 
     /// Copies the positions by slot to those by vertex.
@@ -572,35 +347,5 @@ impl Solver for Newton {
             distortion: self.field(Field::Distortion),
             weights: Vec::new(),
         }
-    }
-}
-
-impl Deformer for Newton {
-    fn retarget(
-        &mut self,
-        positions: &[(u32, [f64; 3])],
-        springs: &[Spring],
-    ) -> Result<(), SolveError> {
-        let dimension = self.evaluation.shape.dimension;
-        for (vertex, point) in positions {
-            let at = self.slot[*vertex as usize] as usize * dimension;
-            assert!(at >= self.unknowns, "vertex {vertex} is not pinned");
-            let at = *vertex as usize * dimension;
-            self.positions[at..at + dimension].copy_from_slice(&point[..dimension]);
-        }
-        let terms = self.evaluation.terms.as_mut();
-        assert!(terms.is_some() || springs.is_empty(), "no external terms");
-        // the matrix is filled anew in every step
-        if let Some(terms) = terms {
-            terms.set_springs(springs, &self.slot);
-        }
-        parallel::in_pool(|| self.look());
-        self.counted_from = self.report.iteration;
-        self.report.status = Status::Running;
-        Ok(())
-    }
-
-    fn field(&self, field: Field) -> Vec<f32> {
-        self.evaluation.field(field)
     }
 }

@@ -70,6 +70,12 @@ impl NewtonSystem {
                 }
             }
         }
+        // vertices of no element, which nothing moves
+        let mean = rest_diagonal.iter().sum::<f64>() / rest_diagonal.len().max(1) as f64;
+        rest_diagonal
+            .iter_mut()
+            .filter(|d| **d == 0.0)
+            .for_each(|d| *d = mean);
         Ok(Self {
             factor: Cholesky::analyze(matrix.matrix(), &levels)?,
             matrix,
