@@ -121,7 +121,7 @@ fn hybrids_and_slim_on_disks() {
             assert_eq!(report.iteration, k);
         }
         let (a, b) = (run.last().energy, cm.last().energy);
-        assert!((a - b).abs() < 1e-6 * b, "disk {seed}: {a} and {b}");
+        assert!((a - b).abs() < 1e-5 * b, "disk {seed}: {a} and {b}");
     }
 }
 

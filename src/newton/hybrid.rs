@@ -11,8 +11,15 @@ use crate::space::{Plane, Space};
 use crate::wrapd::{Problem, RotationAware, Wrapd, WrapdOptions};
 use core::marker::PhantomData;
 
+/// Most iterations of WRAPD from a start without inverted elements.
+const MOST_FIRST: usize = 30;
+
 /// WRAPD, which is fast early and begins anywhere, up to its first iterate (the start not counted) without
 /// inverted elements; from there on Newton's method, which is fast late (Brown & Narain 2021, §7.2).
+///
+/// Where the start has no inverted elements itself, it is where Newton's method begins if WRAPD has found nothing
+/// better when it ends, or nothing at all in 30 iterations: on a bad mesh it can be long in mending what it
+/// inverts.
 ///
 /// Both are analysed beforehand. Moving handles begins with WRAPD again.
 pub struct Hybrid {
@@ -89,16 +96,35 @@ impl Hybrid {
         self.report = StepReport {
             iteration: self.base + step.iteration,
             seconds: seconds + step.seconds,
-            ..step
+            ..step.clone()
         };
-        if self.report.inverted == 0 && self.report.status == Status::Running {
+        // the second still stands at the start
+        let begun = self.second.report();
+        let could_begin = begun.inverted == 0 && !self.second.is_broken();
+        let injective = step.inverted == 0;
+        let late = step.iteration >= MOST_FIRST;
+        if could_begin && (late || (injective && begun.energy <= step.energy)) {
+            self.second.take_over(&self.report);
+            self.switch();
+        } else if injective && self.report.status == Status::Running {
             self.second.restart(self.first.positions(), &self.report);
-            self.switched = !self.second.is_broken();
-            if self.switched {
-                self.report.switched_at = Some(self.report.iteration);
+            if !self.second.is_broken() {
+                self.switch();
             }
         }
         Ok(())
+    }
+}
+
+impl Hybrid {
+    /// From here on the second stands for the whole.
+    fn switch(&mut self) {
+        self.switched = true;
+        self.report = StepReport {
+            switched_at: Some(self.report.iteration),
+            phases: core::mem::take(&mut self.report.phases),
+            ..self.second.report().clone()
+        };
     }
 }
 

@@ -28,7 +28,7 @@ impl Default for NewtonOptions {
         Self {
             fraction: 0.8,
             decrease: 1e-4,
-            longest: 2.0,
+            longest: 8.0,
             shift: 1e-14,
             tolerance: 1e-11,
             max_iterations: 5000,

@@ -205,6 +205,11 @@ impl Newton {
     pub(super) fn restart(&mut self, positions: &[f64], report: &StepReport) {
         self.positions.copy_from_slice(positions);
         parallel::in_pool(|| self.look());
+        self.take_over(report);
+    }
+
+    /// Continues another solver's count from where it stands.
+    pub(super) fn take_over(&mut self, report: &StepReport) {
         self.report.iteration = report.iteration;
         self.report.seconds = report.seconds;
         self.report.status = Status::Running;
