@@ -7,7 +7,7 @@ use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{Phase, SolveError, Stopwatch};
 
 /// The exact Hessian is tried again after at most this many steps where it was not definite.
-const LONGEST_WAIT: usize = 16;
+const LONGEST_WAIT: usize = 2;
 
 /// Larger shifts tried where no step along a direction lowers the energy.
 const MOST_SHIFTS: u32 = 5;
