@@ -6,22 +6,14 @@ use crate::space::{Components, Space};
 use crate::wrapd::block::Block;
 use core::marker::PhantomData;
 
-/// Matrices of the elements: their Hessians, or positive semidefinite ones in their place.
+/// Matrices of the elements: their Hessians, with all or a part or nothing of what is negative in them.
 pub trait Curvature: Send + Sync {
     /// Of the first `count` elements of a block at the F of its last evaluation, times the measure: element
-    /// after element the d×d blocks, row by row, of the pairs of corners (0,0), (1,0), (1,1), (2,0), ….
-    fn fill(&self, block: &Block, count: usize, kind: Kind, out: &mut [f64]);
-    /// Is the Hessian itself another matrix?
-    fn has_exact(&self) -> bool;
-}
-
-/// Which matrix.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// Positive semidefinite.
-    Semidefinite,
-    /// The Hessian, where the method knows it.
-    Exact,
+    /// after element the d×d blocks, row by row, of the pairs of corners (0,0), (1,0), (1,1), (2,0), …. Of the
+    /// negative part of a Hessian `kept` is left, from 0 (positive semidefinite) to 1 (the Hessian).
+    fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]);
+    /// Does `kept` make a difference?
+    fn has_negative(&self) -> bool;
 }
 
 /// Numbers an element has in [`Curvature::fill`].
@@ -32,25 +24,25 @@ pub fn stride(dimension: usize) -> usize {
 /// A matrix on the entries of F for each element: what most methods differ in.
 pub trait OfGradient<S: Space>: Send + Sync {
     /// At F.
-    fn at(&self, f: S::Gradient<f64>, kind: Kind) -> Square;
-    /// Do the kinds differ?
-    const EXACT: bool;
+    fn at(&self, f: S::Gradient<f64>, kept: f64) -> Square;
+    /// Does `kept` make a difference?
+    const NEGATIVE: bool;
 }
 
 /// Takes a matrix on F to the corners, element by element.
 pub struct OnCorners<S, M>(pub M, pub PhantomData<S>);
 
 impl<S: Space, M: OfGradient<S>> Curvature for OnCorners<S, M> {
-    fn has_exact(&self) -> bool {
-        M::EXACT
+    fn has_negative(&self) -> bool {
+        M::NEGATIVE
     }
 
-    fn fill(&self, block: &Block, count: usize, kind: Kind, out: &mut [f64]) {
+    fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
         let (d, k) = (S::DIM, S::STRETCHES);
         for (e, out) in out.chunks_exact_mut(stride(d)).take(count).enumerate() {
             let h = self
                 .0
-                .at(S::Gradient::from_fn(|c| block.gradient[c][e]), kind);
+                .at(S::Gradient::from_fn(|c| block.gradient[c][e]), kept);
             let hats = hat_gradients(block, e, k);
             // ∂F/∂x_v maps y to y ⊗ g_v: for each corner H times it
             let mut products = [[[0.0; 3]; MOST]; 4];
@@ -90,18 +82,14 @@ fn hat_gradients(block: &Block, e: usize, k: usize) -> [[f64; 3]; 4] {
     hats
 }
 
-/// The Hessian with its negative eigenvalues set to 0 (Teran et al. 2005, by the eigensystems of Smith,
+/// The Hessian, with its negative eigenvalues set to 0 where nothing of them is kept (Teran et al. 2005, by the eigensystems of Smith,
 /// de Goes & Kim 2019).
 pub struct Projected<E>(pub E);
 
 impl<S: Space, E: Energy<S>> OfGradient<S> for Projected<E> {
-    const EXACT: bool = true;
+    const NEGATIVE: bool = true;
 
-    fn at(&self, f: S::Gradient<f64>, kind: Kind) -> Square {
-        let least = match kind {
-            Kind::Semidefinite => 0.0,
-            Kind::Exact => f64::NEG_INFINITY,
-        };
-        Eigensystem::<S>::new(self.0, f).map(|value| value.max(least))
+    fn at(&self, f: S::Gradient<f64>, kept: f64) -> Square {
+        Eigensystem::<S>::new(self.0, f).map(|value| value.max(kept * value))
     }
 }

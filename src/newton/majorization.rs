@@ -14,7 +14,7 @@
 //! The eigenvectors of ∇²|α| and of the rest being perpendicular, for this energy the result is its projected
 //! Hessian, at a fraction of the cost.
 
-use super::curvature::{Curvature, Kind, stride};
+use super::curvature::{Curvature, stride};
 use crate::space::{Components, Lane, Pack, dispatch};
 use crate::wrapd::block::{BLOCK, Block, load};
 use pulp::{Simd, WithSimd};
@@ -29,20 +29,16 @@ const TINY: f64 = 1e-150;
 pub struct CompositeMajorization;
 
 impl Curvature for CompositeMajorization {
-    fn has_exact(&self) -> bool {
+    fn has_negative(&self) -> bool {
         true
     }
 
-    fn fill(&self, block: &Block, count: usize, kind: Kind, out: &mut [f64]) {
+    fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
         debug_assert_eq!(stride(2), ENTRIES);
-        let least = match kind {
-            Kind::Semidefinite => 0.0,
-            Kind::Exact => f64::NEG_INFINITY,
-        };
         dispatch(Kernel {
             block,
             count,
-            least,
+            kept,
             out,
         });
     }
@@ -51,8 +47,8 @@ impl Curvature for CompositeMajorization {
 struct Kernel<'a> {
     block: &'a Block,
     count: usize,
-    /// Of the factor of ∇²|α|.
-    least: f64,
+    /// Of the factor of ∇²|α|, where it is negative.
+    kept: f64,
     out: &'a mut [f64],
 }
 
@@ -70,7 +66,7 @@ fn polar_form<L: Lane>(z: [L; 2]) -> (L, L, [L; 2]) {
 /// The factors of the eigenmatrices at F (by columns): of ∇|α| and ∇|β| with themselves, of the one with the
 /// other, of ∇²|α| and of ∇²|β|, and the directions of α and β.
 #[inline(always)]
-fn factors<L: Lane>([a, c, b, d]: [L; 4], least: L) -> ([L; 4], [[L; 2]; 2]) {
+fn factors<L: Lane>([a, c, b, d]: [L; 4], kept: L) -> ([L; 4], [[L; 2]; 2]) {
     let half = a.lift(0.5);
     let alpha = [half * (a + d), half * (c - b)];
     let beta = [half * (a - d), half * (c + b)];
@@ -84,7 +80,7 @@ fn factors<L: Lane>([a, c, b, d]: [L; 4], least: L) -> ([L; 4], [[L; 2]; 2]) {
     // ψ'' of the two
     let (stiff_large, stiff_small) = (two + six * il2 * il2, two + six * is2 * is2);
     let push = four * p - two * (il * il2 + is * is2);
-    let twist = push.max(least) * inverse_p;
+    let twist = push.max(kept * push) * inverse_p;
     let flip = four + four * (large * large + large * small + small * small) * il * il2 * is * is2;
     (
         [
@@ -105,10 +101,10 @@ impl WithSimd for Kernel<'_> {
         let Self {
             block,
             count,
-            least,
+            kept,
             out,
         } = self;
-        let least = Pack::splat(simd, least);
+        let kept = Pack::splat(simd, kept);
         let width = Pack::<V>::WIDTH;
         let zero = Pack::splat(simd, 0.0);
         let half = Pack::splat(simd, 0.5);
@@ -120,7 +116,7 @@ impl WithSimd for Kernel<'_> {
             let f: [Pack<V>; 4] = load(simd, &block.gradient, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
             let inverse: [Pack<V>; 4] = load(simd, &block.inverse, at);
-            let ([same, cross, twist, flip], [alpha, beta]) = factors(f, least);
+            let ([same, cross, twist, flip], [alpha, beta]) = factors(f, kept);
             let [same, cross, twist, flip] = [area * same, area * cross, area * twist, area * flip];
             // a vertex that moves by y changes α by y ḡ/2 and β by y g/2, as complex numbers: what y is
             // multiplied with along the directions of α and β

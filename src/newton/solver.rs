@@ -6,7 +6,7 @@ mod search;
 
 use self::attempts::Tried;
 use super::NewtonOptions;
-use super::curvature::{Curvature, Kind, OnCorners, Projected};
+use super::curvature::{Curvature, OnCorners, Projected};
 use super::majorization::CompositeMajorization;
 use super::system::NewtonSystem;
 use crate::energy::{Energy, SymmetricDirichlet};
@@ -26,7 +26,8 @@ use core::marker::PhantomData;
 /// A change of the energy below this part of the numbers it is computed from is rounding error.
 const ROUNDING: f64 = 1e-14;
 
-/// The exact Hessian is tried from where a step changes the energy by less than this part,
+/// What is negative in the elements' Hessians is kept from where a step changes the energy by less than this
+/// part.
 const NEAR: f64 = 0.1;
 
 /// Newton's method with a positive semidefinite matrix in place of the Hessian, steps that invert nothing,
@@ -56,9 +57,8 @@ pub struct Newton {
     rounding: f64,
     /// Did the last step change the energy little?
     near: bool,
-    /// The iteration from which the exact Hessian may be tried again, and how long to wait if it fails.
-    exact_from: usize,
-    wait: usize,
+    /// The part of what is negative that the next matrix is to keep.
+    kept: f64,
     report: StepReport,
     /// The iteration of the last change of handles, from which the most iterations are counted.
     counted_from: usize,
@@ -174,8 +174,7 @@ impl Newton {
             trial_gradient: vec![0.0; unknowns],
             direction: vec![0.0; length],
             near: false,
-            exact_from: 0,
-            wait: 1,
+            kept: 1.0,
             report: StepReport::at_start(),
             counted_from: 0,
         };
@@ -276,8 +275,8 @@ impl Newton {
             count: 0,
             milliseconds: 0.0,
         });
-        let tried = match self.wants_exact(iteration) {
-            true => self.attempt(Kind::Exact, 0.0, iteration, &mut phases)?,
+        let tried = match self.near && self.curvature.has_negative() {
+            true => self.indefinite(iteration, &mut phases)?,
             false => Tried::default(),
         };
         let Tried { found, decrement } = match tried.found {

@@ -1,7 +1,7 @@
 //! The matrix of a step and its factor.
 
 use super::NewtonOptions;
-use super::curvature::{Curvature, Kind, stride};
+use super::curvature::{Curvature, stride};
 use crate::geometry::{Elimination, RestShape};
 use crate::linalg::{BlockSum, Cholesky, NotPositiveDefinite};
 use crate::optim::BuildError;
@@ -89,13 +89,13 @@ impl NewtonSystem {
     }
 
     /// Sets the values at the F of the last evaluation.
-    pub fn assemble(&mut self, evaluation: &Evaluation, curvature: &dyn Curvature, kind: Kind) {
+    pub fn assemble(&mut self, evaluation: &Evaluation, curvature: &dyn Curvature, kept: f64) {
         let d = evaluation.shape.dimension;
         let elements = evaluation.elements();
         let blocks = &evaluation.blocks;
         parallel::for_each_chunk(&mut self.blocks, BLOCK * stride(d), |i, out| {
             let count = BLOCK.min(elements - i * BLOCK);
-            curvature.fill(&blocks[i], count, kind, out);
+            curvature.fill(&blocks[i], count, kept, out);
         });
         let springs = evaluation.terms.as_ref().map(|t| &t.spring_stiffness);
         let proximal = self.proximal;
@@ -131,7 +131,7 @@ impl NewtonSystem {
     /// Factors the matrix as it is, but for the least shift and, where the plane can turn about a vertex,
     /// for a stiffness against moving one vertex along the given vector. Succeeds only if the result is
     /// positive definite.
-    pub fn factorize_exact(
+    pub fn factorize_as_is(
         &mut self,
         held: Option<(usize, [f64; 2])>,
     ) -> Result<(), NotPositiveDefinite> {

@@ -7,7 +7,7 @@
 
 use crate::energy::hessian::{MOST, Square};
 use crate::energy::{Arap, Energy, SymmetricDirichlet};
-use crate::newton::curvature::{Kind, OfGradient, OnCorners};
+use crate::newton::curvature::{OfGradient, OnCorners};
 use crate::newton::{Newton, NewtonOptions};
 use crate::optim::BuildError;
 use crate::space::{Components, Space};
@@ -41,9 +41,9 @@ impl<S: Space> Reweightable<S> for Arap {
 struct Proxy<E>(E);
 
 impl<S: Space, E: Reweightable<S>> OfGradient<S> for Proxy<E> {
-    const EXACT: bool = false;
+    const NEGATIVE: bool = false;
 
-    fn at(&self, f: S::Gradient<f64>, _: Kind) -> Square {
+    fn at(&self, f: S::Gradient<f64>, _: f64) -> Square {
         let d = S::DIM;
         let (sigma, frame) = S::svd(f);
         let weight = |i| 2.0 * self.0.weight_squared(sigma.at(i));

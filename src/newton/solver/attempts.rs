@@ -2,12 +2,18 @@
 
 use super::Newton;
 use super::search::Found;
-use crate::newton::curvature::Kind;
 use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{Phase, SolveError, Stopwatch};
 
-/// The exact Hessian is tried again after at most this many steps where it was not definite.
-const LONGEST_WAIT: usize = 2;
+/// How much of what is negative in the elements' Hessians is tried in an iteration: a part, and less where the
+/// sum was not definite. That shows early in the factorisation, mostly, and costs little.
+const MOST_PARTS: u32 = 3;
+
+/// From one to the next, and, where the first was definite, for the next iteration.
+const PARTS_RATIO: f64 = 0.5;
+
+/// The least part that is tried.
+const LEAST_PART: f64 = 0.1;
 
 /// Larger shifts tried where no step along a direction lowers the energy.
 const MOST_SHIFTS: u32 = 5;
@@ -30,9 +36,28 @@ impl Newton {
         self.evaluation.shape.constants.scale * dot(direction, &self.gradient)
     }
 
-    /// Is the exact Hessian worth an attempt?
-    pub(super) fn wants_exact(&self, iteration: usize) -> bool {
-        self.near && iteration >= self.exact_from && self.curvature.has_exact()
+    /// The step with a part, the larger the better, of what is negative in the Hessians of the elements, as long
+    /// as their sum is positive definite: all of it makes it Newton's.
+    pub(super) fn indefinite(
+        &mut self,
+        iteration: usize,
+        phases: &mut [Phase; 4],
+    ) -> Result<Tried, SolveError> {
+        for part in 0..MOST_PARTS {
+            let tried = self.attempt(self.kept, 0.0, iteration, phases)?;
+            if tried.found.is_some() {
+                if part == 0 {
+                    self.kept = (self.kept / PARTS_RATIO).min(1.0);
+                }
+                return Ok(tried);
+            }
+            self.kept *= PARTS_RATIO;
+            if self.kept < LEAST_PART {
+                break;
+            }
+        }
+        self.kept = self.kept.max(LEAST_PART);
+        Ok(Tried::default())
     }
 
     /// The step with positive semidefinite matrices of the elements.
@@ -44,7 +69,7 @@ impl Newton {
         let mut at_least = self.system.next_shift();
         let mut attempts = 0;
         loop {
-            let tried = self.attempt(Kind::Semidefinite, at_least, iteration, phases)?;
+            let tried = self.attempt(0.0, at_least, iteration, phases)?;
             attempts += 1;
             let visible = tried.decrement.abs() > self.resolution();
             let again = visible && attempts <= MOST_SHIFTS && self.system.shift() < 1.0;
@@ -56,10 +81,11 @@ impl Newton {
         }
     }
 
-    /// One matrix, its factor, and a line search; finds nothing if the exact Hessian is not definite.
+    /// One matrix, its factor, and a line search; finds nothing if what is kept of the negative parts
+    /// makes the sum indefinite.
     pub(super) fn attempt(
         &mut self,
-        kind: Kind,
+        kept: f64,
         at_least: f64,
         iteration: usize,
         phases: &mut [Phase; 4],
@@ -71,25 +97,21 @@ impl Newton {
         };
         let clock = Stopwatch::start();
         self.system
-            .assemble(&self.evaluation, &*self.curvature, kind);
+            .assemble(&self.evaluation, &*self.curvature, kept);
         add(local, 1, clock);
         let clock = Stopwatch::start();
-        let factored = match kind {
-            Kind::Exact => self.system.factorize_exact(self.turning()).map(|()| 1),
-            Kind::Semidefinite => self.system.factorize(at_least),
+        let factored = match kept > 0.0 {
+            true => self.system.factorize_as_is(self.turning()).map(|()| 1),
+            false => self.system.factorize(at_least),
         };
         add(factor, factored.unwrap_or(1), clock);
-        match (factored, kind) {
-            (Ok(_), Kind::Exact) => self.wait = 1,
-            (Ok(_), Kind::Semidefinite) => {}
-            (Err(_), Kind::Exact) => {
-                self.wait_for_exact(iteration);
-                return Ok(Tried::default());
-            }
-            (Err(error), _) => {
+        match factored {
+            Err(_) if kept > 0.0 => return Ok(Tried::default()),
+            Err(error) => {
                 let pivot = error.pivot;
                 return Err(SolveError::NotPositiveDefinite { iteration, pivot });
             }
+            Ok(_) => {}
         }
         let clock = Stopwatch::start();
         let slope = self.descend();
@@ -103,18 +125,9 @@ impl Newton {
         if found.is_none() {
             // the next matrix is that of the iterate, not of the last trial
             self.evaluation.at(&self.x, &mut self.trial_gradient);
-            if kind == Kind::Exact {
-                self.wait_for_exact(iteration);
-            }
         }
         let decrement = -0.5 * slope;
         Ok(Tried { found, decrement })
-    }
-
-    /// Leaves the exact Hessian aside for a while, and for longer the next time.
-    fn wait_for_exact(&mut self, iteration: usize) {
-        self.exact_from = iteration + self.wait;
-        self.wait = (2 * self.wait).min(LONGEST_WAIT);
     }
 
     /// Where the plane can still turn about its only pin: the free vertex that is furthest from it, and the
