@@ -98,6 +98,9 @@ impl Hybrid {
             seconds: seconds + step.seconds,
             ..step.clone()
         };
+        if self.report.status != Status::Running {
+            return Ok(());
+        }
         // the second still stands at the start
         let begun = self.second.report();
         let could_begin = begun.inverted == 0 && !self.second.is_broken();
@@ -106,7 +109,7 @@ impl Hybrid {
         if could_begin && (late || (injective && begun.energy <= step.energy)) {
             self.second.take_over(&self.report);
             self.switch();
-        } else if injective && self.report.status == Status::Running {
+        } else if injective {
             self.second.restart(self.first.positions(), &self.report);
             if !self.second.is_broken() {
                 self.switch();

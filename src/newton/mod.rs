@@ -1,6 +1,6 @@
 //! Second-order methods: composite majorization and projected Newton.
 //!
-//! One iteration: the matrices of the elements ([`curvature`]), positive semidefinite by construction, are
+//! One iteration: the matrices of the elements (`curvature`), positive semidefinite by construction, are
 //! summed up in a pattern that was analysed once; a shift relative to the diagonal makes the sum definite,
 //! since rigid motions change no energy; the step is bounded where the first element would degenerate
 //! ([`bound`]), halved until the energy falls as Armijo's rule demands, and brought nearer to the minimum along
