@@ -19,10 +19,12 @@ pub mod geometry;
 pub mod linalg;
 pub mod local_global;
 pub mod mesh;
+pub mod newton;
 pub mod optim;
 mod parallel;
 pub mod parameterization;
 pub mod quasi_newton;
+pub mod slim;
 pub mod space;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;

@@ -8,11 +8,14 @@ use foldfree::parameterization::{
 };
 use glam::DVec3;
 
-const METHODS: [Method; 8] = [
+const METHODS: [Method; 11] = [
     Method::Wrapd,
     Method::RAdmm,
     Method::WAdmm,
     Method::AdmmPd,
+    Method::Cm,
+    Method::WrapdCm,
+    Method::Slim,
     Method::Arap,
     Method::Lscm,
     Method::Harmonic,
@@ -299,8 +302,22 @@ fn the_smallest_meshes() {
                         energy,
                         ..Default::default()
                     };
-                    let mut p = Parameterization::new(&mesh, &options)
-                        .unwrap_or_else(|e| panic!("{name} {method:?} {start:?}: {e}"));
+                    let mut p = match Parameterization::new(&mesh, &options) {
+                        Ok(p) => p,
+                        // starts that these do not take, and an energy
+                        Err(Error::Build(
+                            BuildError::NotInjectiveStart { .. }
+                            | BuildError::InvalidOption {
+                                option: "energy", ..
+                            },
+                        )) if matches!(method, Method::Cm | Method::Slim | Method::WrapdCm)
+                            && (energy == EnergyKind::Arap
+                                || [Start::Random, Start::Collapsed].contains(&start)) =>
+                        {
+                            continue;
+                        }
+                        Err(e) => panic!("{name} {method:?} {start:?}: {e}"),
+                    };
                     for _ in 0..20 {
                         p.step()
                             .unwrap_or_else(|e| panic!("{name} {method:?} {start:?}: {e}"));

@@ -334,3 +334,98 @@ fn threads_do_not_change_the_result() {
     let one = with("1");
     assert!(one == with("2") && one == with("3"));
 }
+
+#[test]
+fn second_order_methods() {
+    let folder = Folder::new("second-order");
+    folder
+        .run(&[
+            "generate",
+            "bumpy-cap",
+            "--triangles",
+            "400",
+            "--out",
+            "a.obj",
+        ])
+        .ends(0);
+    for method in ["cm", "wrapd+cm", "slim"] {
+        let flatten = [
+            "parameterize",
+            "a.obj",
+            "--method",
+            method,
+            "--report",
+            "r.json",
+        ];
+        folder.run(&flatten).ends(0);
+        let report = json(&folder, "r.json");
+        assert_eq!(report["options"]["method"], method);
+        let iterations = report["iterations"].as_array().expect("a list");
+        let last = iterations.last().expect("iterations");
+        assert_eq!(last["inverted"], 0);
+        // the hybrid says when it changed over, from then on
+        let switched: Vec<_> = iterations
+            .iter()
+            .filter_map(|i| i["switched_at"].as_u64())
+            .collect();
+        assert_eq!(switched.is_empty(), method != "wrapd+cm");
+        assert!(switched.iter().all(|&k| k >= 1 && k == switched[0]));
+        if let Some(&k) = switched.first() {
+            assert_eq!(iterations.len() as u64 - k, switched.len() as u64);
+        }
+    }
+    let refused = [
+        "parameterize",
+        "a.obj",
+        "--method",
+        "cm",
+        "--start",
+        "random",
+    ];
+    let ran = folder.run(&refused).ends(1);
+    assert!(
+        ran.stderr
+            .contains("inverted elements, and this method needs none"),
+        "{ran:#?}"
+    );
+    let refused = [
+        "parameterize",
+        "a.obj",
+        "--method",
+        "wrapd+cm",
+        "--energy",
+        "arap",
+    ];
+    let ran = folder.run(&refused).ends(1);
+    assert!(ran.stderr.contains("option energy"), "{ran:#?}");
+
+    folder
+        .run(&["generate", "bar", "--tetrahedra", "300", "--out", "s.node"])
+        .ends(0);
+    folder.write("pins.txt", b"0\n1\n2\n3\n");
+    folder.write("targets.txt", b"40 1.5 0.2 0.1\n");
+    for method in ["newton", "wrapd+newton"] {
+        let deform = [
+            "deform",
+            "--init",
+            "s.node",
+            "--pins",
+            "pins.txt",
+            "--targets",
+            "targets.txt",
+            "--method",
+            method,
+            "--report",
+            "r.json",
+        ];
+        folder.run(&deform).ends(0);
+        let report = json(&folder, "r.json");
+        assert_eq!(report["options"]["method"], method);
+        assert_eq!(report["status"], "converged");
+    }
+    let cloth = [
+        "cloth", "--init", "a.obj", "--pins", "pins.txt", "--method", "newton",
+    ];
+    let ran = folder.run(&cloth).ends(1);
+    assert!(ran.stderr.contains("option method"), "{ran:#?}");
+}

@@ -92,6 +92,13 @@ fn arap_by_local_global() {
 }
 
 #[test]
+fn second_order() {
+    same_bits(Method::Cm, Start::Automatic, 12);
+    same_bits(Method::Slim, Start::Automatic, 6);
+    same_bits(Method::WrapdCm, Start::Automatic, 12);
+}
+
+#[test]
 fn direct_maps() {
     for method in [Method::Lscm, Method::Harmonic, Method::Tutte] {
         same_bits(method, Start::Automatic, 1);

@@ -5,9 +5,10 @@ use crate::Error;
 use crate::energy::Energy;
 use crate::geometry::RestShape;
 use crate::mesh::{MeshError, SimplicialMesh};
+use crate::newton::{Hybrid, Newton, NewtonOptions};
 use crate::optim::{BuildError, Deformer, Stopwatch};
 use crate::quasi_newton::{QuasiNewton, QuasiNewtonOptions};
-use crate::space::Space;
+use crate::space::{Solid, Space};
 use crate::wrapd::{External, Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec3;
 
@@ -74,17 +75,11 @@ pub struct Body<'a> {
 impl Body<'_> {
     /// The solver for an energy.
     pub fn solver<S: Space, E: Energy<S>>(self, energy: E) -> Result<Deformation, Error> {
-        use DeformationMethod::{AdmmPd, Lbfgs, RAdmm, WAdmm, Wrapd as Both};
+        use DeformationMethod::{AdmmPd, Lbfgs, Newton, RAdmm, WAdmm, Wrapd as Both, WrapdNewton};
         let (method, tolerance) = (self.method, self.tolerance);
         let max_iterations = self.max_iterations;
+        let settings = self.wrapd_options();
         self.build(energy.constants().rest_stiffness, |problem| {
-            let settings = WrapdOptions {
-                reweighting: matches!(method, Both | WAdmm).then_some(Reweighting::QUASI_STATIC),
-                tolerance,
-                max_iterations,
-                restart_duals: true,
-                ..Default::default()
-            };
             Ok(match method {
                 Both | RAdmm => Box::new(Wrapd::new::<S, RotationAware, E>(
                     problem, energy, settings,
@@ -98,8 +93,47 @@ impl Body<'_> {
                     };
                     Box::new(QuasiNewton::new::<S, E>(problem, energy, settings)?)
                 }
+                Newton | WrapdNewton => {
+                    let what = "second-order methods are for solids".into();
+                    let option = "method";
+                    return Err(BuildError::InvalidOption { option, what });
+                }
             })
         })
+    }
+
+    /// The solver for an energy of solids, second-order methods among them.
+    pub fn solver_of_solid<E: Energy<Solid>>(self, energy: E) -> Result<Deformation, Error> {
+        use DeformationMethod::{Newton as Alone, WrapdNewton};
+        let (method, wrapd) = (self.method, self.wrapd_options());
+        if !matches!(method, Alone | WrapdNewton) {
+            return self.solver::<Solid, E>(energy);
+        }
+        let newton = NewtonOptions {
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations,
+            ..Default::default()
+        };
+        self.build(energy.constants().rest_stiffness, |problem| {
+            Ok(match method {
+                Alone => Box::new(Newton::projected::<Solid, E>(problem, energy, newton)?),
+                _ => Box::new(Hybrid::projected::<Solid, E>(
+                    problem, energy, wrapd, newton,
+                )?),
+            })
+        })
+    }
+
+    fn wrapd_options(&self) -> WrapdOptions {
+        use DeformationMethod::{WAdmm, Wrapd as Both, WrapdNewton};
+        let reweighting = matches!(self.method, Both | WAdmm | WrapdNewton);
+        WrapdOptions {
+            reweighting: reweighting.then_some(Reweighting::QUASI_STATIC),
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations,
+            restart_duals: true,
+            ..Default::default()
+        }
     }
 
     /// What does not depend on the energy's type.

@@ -91,6 +91,12 @@ impl ClothOptions {
                 "l-bfgs knows no hard limits: it needs limits to be none",
             );
         }
+        if matches!(
+            self.method,
+            DeformationMethod::Newton | DeformationMethod::WrapdNewton
+        ) {
+            return wrong("method", "second-order methods are for solids");
+        }
         self.energy().map(|_| ())
     }
 

@@ -89,6 +89,11 @@ pub enum DeformationMethod {
     /// L-BFGS that begins with the Laplacian (Liu, Bouaziz & Kavan 2017).
     #[serde(rename = "l-bfgs")]
     Lbfgs,
+    /// Newton's method with the projected Hessian (Teran et al. 2005; Smith, de Goes & Kim 2019). Solids only.
+    Newton,
+    /// WRAPD to its first iterate without inverted elements, then Newton's method. Solids only.
+    #[serde(rename = "wrapd+newton")]
+    WrapdNewton,
 }
 
 /// Options of [`super::Deformation`]. `Default` is the paper's choice for quasi-statics (§6.1, §7.1).

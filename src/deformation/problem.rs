@@ -10,7 +10,6 @@ use crate::energy::{
 use crate::geometry::RestShape;
 use crate::mesh::SolidMesh;
 use crate::optim::{Deformer, Field, Solver, StepReport, Stopwatch};
-use crate::space::Solid;
 use crate::wrapd::External;
 use glam::DVec3;
 
@@ -79,17 +78,17 @@ impl Deformation {
         };
         let mut made = match options.material {
             Material::NeoHookean { young, poisson } => {
-                body.solver::<Solid, _>(NeoHookean::new(young, poisson)?)
+                body.solver_of_solid(NeoHookean::new(young, poisson)?)
             }
             Material::StableNeoHookean { young, poisson } => {
-                body.solver::<Solid, _>(StableNeoHookean::new(young, poisson)?)
+                body.solver_of_solid(StableNeoHookean::new(young, poisson)?)
             }
             Material::StVenantKirchhoff { young, poisson } => {
-                body.solver::<Solid, _>(StVenantKirchhoff::new(young, poisson)?)
+                body.solver_of_solid(StVenantKirchhoff::new(young, poisson)?)
             }
-            Material::Dirichlet => body.solver::<Solid, _>(Dirichlet),
-            Material::Arap => body.solver::<Solid, _>(Arap),
-            Material::SymmetricDirichlet => body.solver::<Solid, _>(SymmetricDirichlet),
+            Material::Dirichlet => body.solver_of_solid(Dirichlet),
+            Material::Arap => body.solver_of_solid(Arap),
+            Material::SymmetricDirichlet => body.solver_of_solid(SymmetricDirichlet),
         }?;
         made.rest = Some(rest.clone());
         Ok(made)

@@ -12,11 +12,11 @@ use nalgebra_sparse::pattern::SparsityPattern;
 #[derive(Debug, Clone)]
 pub struct SymmetricAssembly {
     /// Lower triangle, diagonal first in each column.
-    matrix: CscMatrix<f64>,
+    pub(super) matrix: CscMatrix<f64>,
     /// Where each entry's contributions begin; length: entries + 1.
-    begin: Vec<u32>,
+    pub(super) begin: Vec<u32>,
     /// The contributions, as indices into the list handed to `new`.
-    contribution: Vec<u32>,
+    pub(super) contribution: Vec<u32>,
 }
 
 impl SymmetricAssembly {

@@ -1,6 +1,7 @@
 //! Sparse symmetric systems: assembly with a fixed pattern, ordering, Cholesky.
 
 mod assembly;
+mod blocks;
 mod cholesky;
 mod dissection;
 mod elimination_tree;
@@ -10,6 +11,7 @@ mod panels;
 mod triangular;
 
 pub use assembly::{SymmetricAssembly, WeightedSum};
+pub use blocks::BlockSum;
 pub use cholesky::{Cholesky, NotPositiveDefinite};
 pub use dissection::{Bisection, Bisector};
 pub use elimination_tree::EliminationTree;

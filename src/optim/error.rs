@@ -59,6 +59,9 @@ pub enum SolveError {
     /// A refactorisation met a non-positive pivot.
     #[error("iteration {iteration}: the system matrix lost positive definiteness (pivot {pivot})")]
     NotPositiveDefinite { iteration: usize, pivot: usize },
+    /// Moved handles inverted elements, and the method cannot begin there.
+    #[error("iteration {iteration}: {inverted} elements are inverted, and this method needs none")]
+    NotInjective { iteration: usize, inverted: usize },
     /// The iterate is no longer finite.
     #[error("iteration {iteration}: vertex {vertex} is no longer finite")]
     NonFinite { iteration: usize, vertex: usize },
@@ -69,6 +72,7 @@ impl SolveError {
     pub fn code(&self) -> &'static str {
         match self {
             SolveError::NotPositiveDefinite { .. } => "not-positive-definite",
+            SolveError::NotInjective { .. } => "not-injective",
             SolveError::NonFinite { .. } => "non-finite",
         }
     }

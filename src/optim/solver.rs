@@ -51,13 +51,14 @@ impl Status {
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum PhaseKind {
-    /// The per-element proximal step.
+    /// The per-element step: the prox, or (second-order methods) the matrices of the elements and their sum.
     Local,
     /// The solve for the vertex positions.
     Global,
-    /// New element weights and the numeric refactorisation they need.
+    /// New element weights and the numeric refactorisation they need; the factorisation of every step of
+    /// a second-order method.
     Reweight,
-    /// Energy, flips and termination.
+    /// Energy, flips and termination; line searches.
     Evaluate,
 }
 
@@ -109,6 +110,8 @@ pub struct StepReport {
     pub lbfgs_iterations: usize,
     /// Did the element weights change in this step?
     pub reweighted: bool,
+    /// Of a method in two stages: the iteration with which the first ended.
+    pub switched_at: Option<usize>,
     /// Seconds spent in steps, setup and the time between steps apart.
     pub seconds: f64,
     /// The phases, in order.
@@ -128,6 +131,7 @@ impl StepReport {
             largest_sigma: 0.0,
             lbfgs_iterations: 0,
             reweighted: false,
+            switched_at: None,
             seconds: 0.0,
             phases: Vec::new(),
         }

@@ -17,6 +17,13 @@ pub enum Method {
     WAdmm,
     /// ADMM-PD (Overby et al. 2017).
     AdmmPd,
+    /// Composite majorization (Shtengel et al. 2017); symmetric Dirichlet, injective starts.
+    Cm,
+    /// WRAPD to its first iterate without inverted triangles, then composite majorization.
+    #[serde(rename = "wrapd+cm")]
+    WrapdCm,
+    /// SLIM (Rabinovich et al. 2017); injective starts for symmetric Dirichlet.
+    Slim,
     /// ARAP by local/global (Liu et al. 2008).
     Arap,
     /// Least squares conformal map (Lévy et al. 2002): direct.
@@ -27,7 +34,7 @@ pub enum Method {
     Tutte,
 }
 
-/// The energy an ADMM method minimises.
+/// The energy that is minimised, by the ADMM methods and SLIM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
@@ -78,7 +85,7 @@ pub enum CutPolicy {
 pub struct ParameterizationOptions {
     /// The method.
     pub method: Method,
-    /// The energy of the ADMM methods.
+    /// The energy of the ADMM methods and SLIM.
     pub energy: EnergyKind,
     /// The start of the iterative methods.
     pub start: Start,
@@ -116,6 +123,13 @@ impl ParameterizationOptions {
             return Err(BuildError::InvalidOption {
                 option: "tolerance",
                 what: format!("{} is not a finite number of at least 0", self.tolerance),
+            });
+        }
+        let majorizes = matches!(self.method, Method::Cm | Method::WrapdCm);
+        if majorizes && self.energy != EnergyKind::SymmetricDirichlet {
+            return Err(BuildError::InvalidOption {
+                option: "energy",
+                what: "composite majorization is for symmetric-dirichlet".into(),
             });
         }
         Ok(())

@@ -10,7 +10,9 @@ use crate::geometry::{RestShape, surface_area};
 use crate::local_global::ArapLocalGlobal;
 use crate::mesh::cut::cut_to_disk;
 use crate::mesh::{MeshError, Prepared, SurfaceMesh, Topology, prepare};
+use crate::newton::{Hybrid, Newton, NewtonOptions};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
+use crate::slim::slim;
 use crate::space::Plane;
 use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
 use glam::DVec2;
@@ -156,6 +158,21 @@ impl Parameterization {
                     EnergyKind::Arap => admm(problem, Arap, options)?,
                 }
             }
+            Method::Cm => Box::new(Newton::composite_majorization(
+                problem,
+                second_order(options),
+            )?),
+            Method::WrapdCm => Box::new(Hybrid::composite_majorization(
+                problem,
+                wrapd_options(options),
+                second_order(options),
+            )?),
+            Method::Slim => Box::new(match options.energy {
+                EnergyKind::SymmetricDirichlet => {
+                    slim::<Plane, _>(problem, SymmetricDirichlet, second_order(options))?
+                }
+                EnergyKind::Arap => slim::<Plane, _>(problem, Arap, second_order(options))?,
+            }),
             Method::Arap => Box::new(ArapLocalGlobal::<Plane>::new(
                 problem,
                 options.tolerance,
@@ -238,6 +255,29 @@ impl Parameterization {
     }
 }
 
+/// What the options mean to a second-order solver.
+fn second_order(options: &ParameterizationOptions) -> NewtonOptions {
+    NewtonOptions {
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        ..Default::default()
+    }
+}
+
+/// What they mean to an ADMM solver.
+fn wrapd_options(options: &ParameterizationOptions) -> WrapdOptions {
+    let reweighting = matches!(
+        options.method,
+        Method::Wrapd | Method::WAdmm | Method::WrapdCm
+    );
+    WrapdOptions {
+        reweighting: reweighting.then_some(Reweighting::PARAMETERIZATION),
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        ..Default::default()
+    }
+}
+
 /// The ADMM solver the method names: the paper's four curves differ in the coupling and in whether
 /// weights change.
 fn admm<E: Energy<Plane>>(
@@ -245,14 +285,7 @@ fn admm<E: Energy<Plane>>(
     energy: E,
     options: &ParameterizationOptions,
 ) -> Result<Box<dyn Solver>, BuildError> {
-    let reweighting = matches!(options.method, Method::Wrapd | Method::WAdmm)
-        .then_some(Reweighting::PARAMETERIZATION);
-    let settings = WrapdOptions {
-        reweighting,
-        tolerance: options.tolerance,
-        max_iterations: options.max_iterations,
-        ..Default::default()
-    };
+    let settings = wrapd_options(options);
     Ok(match options.method {
         Method::Wrapd | Method::RAdmm => Box::new(Wrapd::new::<Plane, RotationAware, E>(
             problem, energy, settings,

@@ -23,7 +23,8 @@ pub struct Evaluation {
     measure: f64,
     /// The element at each place of the blocks.
     order: Vec<u32>,
-    blocks: Vec<Block>,
+    /// The elements; F and its singular values are those of the last evaluation.
+    pub blocks: Vec<Block>,
     forces: Vec<f64>,
     corner_begin: Vec<u32>,
     corners: Vec<u32>,
@@ -96,6 +97,11 @@ impl Evaluation {
     fn rounding_of_terms(&self) -> f64 {
         let rounding = self.terms.as_ref().map_or(0.0, |t| t.rounding);
         self.shape.constants.scale * rounding
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.order.len()
     }
 
     /// At positions by slot; the raw energy's gradient goes to `gradient` (free vertices × dimension).

@@ -6,7 +6,7 @@
 //! falls as Armijo's rule demands, or, where rounding decides what the energy does, the slope along the
 //! step does as it would for a parabola that falls so (Hager & Zhang 2005). Elements are evaluated by the kernels of [`crate::wrapd`].
 
-mod evaluation;
+pub(crate) mod evaluation;
 mod noise;
 mod options;
 mod solver;

@@ -34,6 +34,10 @@ pub struct StepReport<'a> {
     pub lbfgs_iterations: u32,
     /// Did the element weights change in this step?
     pub reweighted: bool,
+    /// Of a method in two stages: the iteration with which the first ended, once it has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[tsify(optional)]
+    pub switched_at: Option<u32>,
     /// Seconds since the first step began, setup apart.
     pub seconds: f64,
     /// What the step consisted of, in order.
@@ -58,6 +62,7 @@ impl<'a> From<&'a optim::StepReport> for StepReport<'a> {
             largest_sigma: report.largest_sigma,
             lbfgs_iterations: report.lbfgs_iterations as u32,
             reweighted: report.reweighted,
+            switched_at: report.switched_at.map(|k| k as u32),
             seconds: report.seconds,
             phases: &report.phases,
         }

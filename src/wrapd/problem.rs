@@ -18,8 +18,21 @@ pub struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Checks that the parts fit together.
+    /// Checks that the parts fit together, and that something holds the rest in place.
     pub fn validate(&self, dimension: usize, stretches: usize) -> Result<(), BuildError> {
+        self.validate_parts(dimension, stretches)?;
+        let sprung = self.external.is_some_and(|e| !e.springs.is_empty());
+        if self.pins.is_empty() && !sprung {
+            return Err(BuildError::InvalidOption {
+                option: "pins",
+                what: "needs at least one vertex".into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Checks that the parts fit together.
+    pub fn validate_parts(&self, dimension: usize, stretches: usize) -> Result<(), BuildError> {
         let problem = self;
         let (rest, start) = (problem.rest, problem.start);
         let n = start.len() / dimension;
@@ -68,11 +81,10 @@ impl Problem<'_> {
         if let Some(external) = problem.external {
             external.validate(n, dimension, problem.pins)?;
         }
-        let sprung = problem.external.is_some_and(|e| !e.springs.is_empty());
-        if (problem.pins.is_empty() && !sprung) || problem.pins.iter().any(|&p| p as usize >= n) {
+        if problem.pins.iter().any(|&p| p as usize >= n) {
             return Err(BuildError::InvalidOption {
                 option: "pins",
-                what: format!("needs at least one vertex, each below {n}"),
+                what: format!("needs vertices below {n}"),
             });
         }
         Ok(())

@@ -42,7 +42,7 @@ pub struct Parameterize {
     /// How.
     #[arg(long, default_value = "wrapd", value_parser = names::<Method>(METHODS))]
     pub method: Method,
-    /// Energy of the ADMM methods.
+    /// Energy of the ADMM methods and of slim.
     #[arg(long, default_value = "symmetric-dirichlet", value_parser = names::<EnergyKind>(ENERGIES))]
     pub energy: EnergyKind,
     /// Where the iterative methods start.
@@ -231,7 +231,8 @@ impl Sample {
 }
 
 const METHODS: &[&str] = &[
-    "wrapd", "r-admm", "w-admm", "admm-pd", "arap", "lscm", "harmonic", "tutte",
+    "wrapd", "r-admm", "w-admm", "admm-pd", "cm", "wrapd+cm", "slim", "arap", "lscm", "harmonic",
+    "tutte",
 ];
 const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
 const STARTS: &[&str] = &[

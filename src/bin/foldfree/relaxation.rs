@@ -28,8 +28,8 @@ pub struct Relaxation {
     /// How hard targets pull, relative to how hard the body holds on to a vertex.
     #[arg(long, value_name = "K", default_value_t = DeformationOptions::default().target_stiffness, value_parser = positive)]
     pub target_stiffness: f64,
-    /// How.
-    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs"]))]
+    /// How; newton and wrapd+newton are for solids.
+    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "newton", "wrapd+newton"]))]
     pub method: DeformationMethod,
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]

@@ -53,6 +53,9 @@ pub struct Iteration {
     pub largest_sigma: f64,
     pub lbfgs_iterations: usize,
     pub reweighted: bool,
+    /// Of a method in two stages: the iteration with which the first ended, once it has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub switched_at: Option<usize>,
     /// ‖x − x*‖/‖x₀ − x*‖ against the reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_error: Option<f64>,
@@ -84,6 +87,7 @@ impl From<&StepReport> for Iteration {
             largest_sigma: step.largest_sigma,
             lbfgs_iterations: step.lbfgs_iterations,
             reweighted: step.reweighted,
+            switched_at: step.switched_at,
             position_error: None,
             phases: step.phases.iter().map(phase).collect(),
         }

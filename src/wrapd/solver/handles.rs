@@ -36,6 +36,23 @@ impl Deformer for Wrapd {
 }
 
 impl Wrapd {
+    /// Begins anew at these positions, by vertex; weights and factor stay.
+    pub(crate) fn restart(&mut self, positions: &[f64]) {
+        let dimension = self.shape.dimension;
+        for (position, &slot) in positions.chunks_exact(dimension).zip(&self.slot) {
+            self.x[slot as usize * dimension..][..dimension].copy_from_slice(position);
+        }
+        // Z and U are set anew in the first iterations
+        self.report.iteration = 0;
+        self.counted_from = 0;
+        self.history.clear();
+        parallel::in_pool(|| {
+            self.look();
+            self.publish();
+        });
+        self.report.status = Status::Running;
+    }
+
     /// One value an element, in the input's order.
     pub(super) fn by_element(&self, value: impl Fn(&Block, usize) -> f32) -> Vec<f32> {
         let mut values = vec![0.0; self.order.len()];

@@ -1,0 +1,95 @@
+//! The matrices of the elements, whose sum is what a step solves with.
+
+use crate::energy::Energy;
+use crate::energy::hessian::{Eigensystem, MOST, Square};
+use crate::space::{Components, Space};
+use crate::wrapd::block::Block;
+use core::marker::PhantomData;
+
+/// Matrices of the elements: their Hessians, with all or a part or nothing of what is negative in them.
+pub trait Curvature: Send + Sync {
+    /// Of the first `count` elements of a block at the F of its last evaluation, times the measure: element
+    /// after element the d×d blocks, row by row, of the pairs of corners (0,0), (1,0), (1,1), (2,0), …. Of the
+    /// negative part of a Hessian `kept` is left, from 0 (positive semidefinite) to 1 (the Hessian).
+    fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]);
+    /// Does `kept` make a difference?
+    fn has_negative(&self) -> bool;
+}
+
+/// Numbers an element has in [`Curvature::fill`].
+pub fn stride(dimension: usize) -> usize {
+    (dimension + 1) * (dimension + 2) / 2 * dimension * dimension
+}
+
+/// A matrix on the entries of F for each element: what most methods differ in.
+pub trait OfGradient<S: Space>: Send + Sync {
+    /// At F.
+    fn at(&self, f: S::Gradient<f64>, kept: f64) -> Square;
+    /// Does `kept` make a difference?
+    const NEGATIVE: bool;
+}
+
+/// Takes a matrix on F to the corners, element by element.
+pub struct OnCorners<S, M>(pub M, pub PhantomData<S>);
+
+impl<S: Space, M: OfGradient<S>> Curvature for OnCorners<S, M> {
+    fn has_negative(&self) -> bool {
+        M::NEGATIVE
+    }
+
+    fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
+        let (d, k) = (S::DIM, S::STRETCHES);
+        for (e, out) in out.chunks_exact_mut(stride(d)).take(count).enumerate() {
+            let h = self
+                .0
+                .at(S::Gradient::from_fn(|c| block.gradient[c][e]), kept);
+            let hats = hat_gradients(block, e, k);
+            // ∂F/∂x_v maps y to y ⊗ g_v: for each corner H times it
+            let mut products = [[[0.0; 3]; MOST]; 4];
+            for (product, g) in products.iter_mut().zip(&hats[..=k]) {
+                for (row, product) in h[..d * k].iter().zip(product) {
+                    for (j, product) in product[..d].iter_mut().enumerate() {
+                        *product = (0..k).map(|c| row[c * d + j] * g[c]).sum();
+                    }
+                }
+            }
+            let mut next = out.chunks_exact_mut(d * d);
+            for u in 0..=k {
+                for v in 0..=u {
+                    let Some(target) = next.next() else { continue };
+                    for i in 0..d {
+                        for j in 0..d {
+                            let sum: f64 =
+                                (0..k).map(|c| hats[u][c] * products[v][c * d + i][j]).sum();
+                            target[i * d + j] = block.measure[0][e] * sum;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The gradients of the hat functions of an element's corners.
+fn hat_gradients(block: &Block, e: usize, k: usize) -> [[f64; 3]; 4] {
+    let mut hats = [[0.0; 3]; 4];
+    for v in 1..=k {
+        for column in 0..k {
+            hats[v][column] = block.inverse[column * k + v - 1][e];
+            hats[0][column] -= hats[v][column];
+        }
+    }
+    hats
+}
+
+/// The Hessian, with its negative eigenvalues set to 0 where nothing of them is kept (Teran et al. 2005, by the eigensystems of Smith,
+/// de Goes & Kim 2019).
+pub struct Projected<E>(pub E);
+
+impl<S: Space, E: Energy<S>> OfGradient<S> for Projected<E> {
+    const NEGATIVE: bool = true;
+
+    fn at(&self, f: S::Gradient<f64>, kept: f64) -> Square {
+        Eigensystem::<S>::new(self.0, f).map(|value| value.max(kept * value))
+    }
+}
