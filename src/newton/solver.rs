@@ -14,13 +14,14 @@ use crate::geometry::Elimination;
 use crate::optim::vectors::dot;
 use crate::optim::{
     BuildError, Criterion, Deformer, Field, Inspection, Phase, PhaseKind, SolveError, Solver,
-    Status, StepReport, Stopwatch,
+    Status, StepReport, Stopwatch, Yardstick,
 };
 use crate::parallel;
 use crate::quasi_newton::evaluation::{Evaluation, Value};
 use crate::space::{Plane, Space};
-use crate::wrapd::Problem;
+use crate::wrapd::elements::{Model, Shape};
 use crate::wrapd::external::Terms;
+use crate::wrapd::{Linear, Problem};
 use core::marker::PhantomData;
 
 /// A change of the energy below this part of the numbers it is computed from is rounding error.
@@ -59,6 +60,9 @@ pub struct Newton {
     near: bool,
     /// The part of what is negative that the next matrix is to keep.
     kept: f64,
+    yardstick: Yardstick,
+    /// The reported energy without its offset.
+    energy: f64,
     report: StepReport,
     /// The iteration of the last change of handles, from which the most iterations are counted.
     counted_from: usize,
@@ -125,8 +129,10 @@ impl Newton {
         let terms = problem.external.map(|external| {
             Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
-        let evaluation = Evaluation::new::<S, E>(energy, problem.rest, &elimination, terms);
+        let shape = Shape::of::<S, Linear, E>(&energy);
+        let elements = Box::new(Model::<S, Linear>::new(energy));
         parallel::in_pool(|| {
+            let evaluation = Evaluation::new(shape, elements, problem.rest, &elimination, terms);
             Self::build(
                 problem,
                 elimination,
@@ -154,6 +160,7 @@ impl Newton {
             proximal,
             &options,
         )?;
+        let yardstick = evaluation.yardstick();
         let constants = &evaluation.shape.constants;
         let measure: f64 = problem.rest.measure.iter().sum();
         let unknowns = elimination.free * evaluation.shape.dimension;
@@ -175,6 +182,8 @@ impl Newton {
             direction: vec![0.0; length],
             near: false,
             kept: 1.0,
+            yardstick,
+            energy: f64::INFINITY,
             report: StepReport::at_start(),
             counted_from: 0,
         };
@@ -197,7 +206,7 @@ impl Newton {
 
     /// Is the energy infinite where it stands?
     pub(super) fn is_broken(&self) -> bool {
-        self.evaluation.shape.barrier && self.report.energy == f64::INFINITY
+        self.evaluation.shape.barrier && self.energy == f64::INFINITY
     }
 
     /// Continues from these positions, by vertex.
@@ -230,7 +239,8 @@ impl Newton {
     /// Fills the report from an evaluation whose gradient is in `gradient`.
     fn take(&mut self, value: Value) {
         let finite = value.energy.is_finite();
-        self.report.energy = if finite { value.energy } else { f64::INFINITY };
+        self.energy = if finite { value.energy } else { f64::INFINITY };
+        self.report.energy = self.energy + self.evaluation.shape.constants.offset;
         self.report.inverted = value.inverted;
         self.report.smallest_sigma = value.smallest;
         self.report.largest_sigma = value.largest;
@@ -245,7 +255,7 @@ impl Newton {
     fn resolution(&self) -> f64 {
         let terms = self.evaluation.terms.as_ref();
         let terms = terms.map_or(0.0, |t| t.rounding * self.evaluation.shape.constants.scale);
-        self.rounding + ROUNDING * self.report.energy.abs() + terms
+        self.rounding + ROUNDING * self.energy.abs() + terms
     }
 
     /// The vertex of the first unknown that is not finite.
@@ -257,7 +267,7 @@ impl Newton {
 
     fn iterate(&mut self) -> Result<(), SolveError> {
         let begun = Stopwatch::start();
-        let before = self.report.energy;
+        let before = self.energy;
         let iteration = self.report.iteration + 1;
         if self.is_broken() {
             let inverted = self.report.inverted;
@@ -285,7 +295,7 @@ impl Newton {
         };
 
         self.report.iteration = iteration;
-        let floor = self.evaluation.shape.constants.floor;
+        let floor = self.yardstick.floor;
         let tolerance = self.options.tolerance;
         match found {
             Some(found) => {
@@ -294,20 +304,26 @@ impl Newton {
                 self.take(found.value);
                 self.publish();
                 // a step cut short changes little, too, far from the minimum
-                let change = before - self.report.energy;
-                self.near = change < NEAR * (self.report.energy.abs() + floor);
-                let near = decrement < 10.0 * tolerance * (self.report.energy.abs() + floor);
+                let change = before - self.energy;
+                self.near = change < NEAR * (self.energy.abs() + floor);
+                let near = decrement < 10.0 * tolerance * (self.energy.abs() + floor);
                 let may = near || found.by_rounding;
                 let most = self.counted_from + self.options.max_iterations;
-                self.report.settle((before, floor), may, tolerance, most);
-                let stuck = found.by_rounding && self.report.energy == before;
+                let met = self.yardstick.criterion(
+                    change,
+                    self.energy,
+                    self.report.gradient_norm,
+                    tolerance,
+                );
+                self.report.conclude(met.filter(|_| may), most);
+                let stuck = found.by_rounding && self.energy == before;
                 if stuck && self.report.status == Status::Running {
                     self.report.status = Status::Stalled;
                 }
             }
             // also at a minimum to rounding, where no step is seen to lower the energy
             None => {
-                let near = decrement.abs() < tolerance * (self.report.energy.abs() + floor);
+                let near = decrement.abs() < tolerance * (self.energy.abs() + floor);
                 self.report.status = match near && tolerance > 0.0 {
                     true => Status::Converged(Criterion::EnergyChange),
                     false => Status::Stalled,

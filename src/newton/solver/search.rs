@@ -69,8 +69,8 @@ impl Newton {
             let value = self.try_step(step);
             let by_rounding = -step * slope < resolution;
             let enough = match by_rounding {
-                true => self.report.energy,
-                false => self.report.energy + self.options.decrease * step * slope,
+                true => self.energy,
+                false => self.energy + self.options.decrease * step * slope,
             };
             if value.energy.is_finite() && value.energy <= enough {
                 let mut found = Found {
