@@ -78,8 +78,9 @@ export async function audit(page, where) {
   assert.deepEqual(violations.map((v) => `${where}: ${v.id} ${v.nodes.map((n) => n.target).join(' ')}`), []);
 }
 
-/** The status line as numbers. */
+/** The status line as numbers, when it has been drawn: what is shown is counted at once and drawn with the next frame. */
 export async function status(page) {
+  await page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); }));
   const text = await page.textContent('#status');
   const [, iteration, energy, inverted] = /iteration (\d+).*?energy ([\d.e∞-]+).*?(\d[\d\u00a0]*) inverted/.exec(text) ?? [];
   return { text, iteration: Number(iteration), energy: Number(energy), inverted: Number(inverted?.replaceAll('\u00a0', '')) };
