@@ -55,15 +55,15 @@ fn check(name: &str, optimum: f64, alone: usize, after_wrapd: usize) {
 
 #[test]
 fn bull() {
-    check("bull", 1.0128375275, 30, 30);
+    check("bull", 1.0128375275, 30, 20);
 }
 
 #[test]
 fn hilbert() {
-    check("hilbert", 1.0, 80, 120);
+    check("hilbert", 1.0, 80, 20);
 }
 
 #[test]
 fn horse() {
-    check("horse", 1.0223209521, 60, 45);
+    check("horse", 1.0223209521, 60, 20);
 }

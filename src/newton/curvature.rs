@@ -3,7 +3,7 @@
 use crate::energy::Energy;
 use crate::energy::hessian::{Eigensystem, MOST, Square};
 use crate::space::{Components, Space};
-use crate::wrapd::block::Block;
+use crate::wrapd::block::{Block, Row};
 use core::marker::PhantomData;
 
 /// Matrices of the elements: their Hessians, with all or a part or nothing of what is negative in them.
@@ -12,6 +12,11 @@ pub trait Curvature: Send + Sync {
     /// after element the d×d blocks, row by row, of the pairs of corners (0,0), (1,0), (1,1), (2,0), …. Of the
     /// negative part of a Hessian `kept` is left, from 0 (positive semidefinite) to 1 (the Hessian).
     fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]);
+    /// The same along curves on which elements turn, with what [`super::turns`] has to say of each of them:
+    /// that of straight lines where the method knows no others.
+    fn fill_turning(&self, block: &Block, _: &Row, count: usize, kept: f64, out: &mut [f64]) {
+        self.fill(block, count, kept, out);
+    }
     /// Does `kept` make a difference?
     fn has_negative(&self) -> bool;
 }

@@ -43,6 +43,10 @@ impl Hybrid {
         second: NewtonOptions,
     ) -> Result<Self, BuildError> {
         let curvature = Box::new(CompositeMajorization);
+        let second = NewtonOptions {
+            turning: true,
+            ..second
+        };
         Self::with_curvature::<Plane, _>(problem, SymmetricDirichlet, curvature, first, second)
     }
 

@@ -16,7 +16,7 @@
 
 use super::curvature::{Curvature, stride};
 use crate::space::{Components, Lane, Pack, dispatch};
-use crate::wrapd::block::{BLOCK, Block, load};
+use crate::wrapd::block::{BLOCK, Block, Row, load};
 use pulp::{Simd, WithSimd};
 
 /// Entries of a triangle's matrix.
@@ -34,9 +34,21 @@ impl Curvature for CompositeMajorization {
     }
 
     fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
+        self.fill_turning(block, &[0.0; BLOCK], count, kept, out);
+    }
+
+    fn fill_turning(
+        &self,
+        block: &Block,
+        unbalanced: &Row,
+        count: usize,
+        kept: f64,
+        out: &mut [f64],
+    ) {
         debug_assert_eq!(stride(2), ENTRIES);
         dispatch(Kernel {
             block,
+            unbalanced,
             count,
             kept,
             out,
@@ -46,6 +58,8 @@ impl Curvature for CompositeMajorization {
 
 struct Kernel<'a> {
     block: &'a Block,
+    /// ∇λ : F, see [`super::turns`].
+    unbalanced: &'a Row,
     count: usize,
     /// Of the factor of ∇²|α|, where it is negative.
     kept: f64,
@@ -66,7 +80,7 @@ fn polar_form<L: Lane>(z: [L; 2]) -> (L, L, [L; 2]) {
 /// The factors of the eigenmatrices at F (by columns): of ∇|α| and ∇|β| with themselves, of the one with the
 /// other, of ∇²|α| and of ∇²|β|, and the directions of α and β.
 #[inline(always)]
-fn factors<L: Lane>([a, c, b, d]: [L; 4], kept: L) -> ([L; 4], [[L; 2]; 2]) {
+fn factors<L: Lane>([a, c, b, d]: [L; 4], unbalanced: L, kept: L) -> ([L; 4], [[L; 2]; 2]) {
     let half = a.lift(0.5);
     let alpha = [half * (a + d), half * (c - b)];
     let beta = [half * (a - d), half * (c + b)];
@@ -79,7 +93,7 @@ fn factors<L: Lane>([a, c, b, d]: [L; 4], kept: L) -> ([L; 4], [[L; 2]; 2]) {
     let (il2, is2) = (il * il, is * is);
     // ψ'' of the two
     let (stiff_large, stiff_small) = (two + six * il2 * il2, two + six * is2 * is2);
-    let push = four * p - two * (il * il2 + is * is2);
+    let push = four * p - two * (il * il2 + is * is2) - unbalanced * inverse_p;
     let twist = push.max(kept * push) * inverse_p;
     let flip = four + four * (large * large + large * small + small * small) * il * il2 * is * is2;
     (
@@ -100,6 +114,7 @@ impl WithSimd for Kernel<'_> {
     fn with_simd<V: Simd>(self, simd: V) {
         let Self {
             block,
+            unbalanced,
             count,
             kept,
             out,
@@ -116,7 +131,8 @@ impl WithSimd for Kernel<'_> {
             let f: [Pack<V>; 4] = load(simd, &block.gradient, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
             let inverse: [Pack<V>; 4] = load(simd, &block.inverse, at);
-            let ([same, cross, twist, flip], [alpha, beta]) = factors(f, kept);
+            let ([same, cross, twist, flip], [alpha, beta]) =
+                factors(f, Pack::load(simd, &unbalanced[at..at + width]), kept);
             let [same, cross, twist, flip] = [area * same, area * cross, area * twist, area * flip];
             // a vertex that moves by y changes α by y ḡ/2 and β by y g/2, as complex numbers: what y is
             // multiplied with along the directions of α and β

@@ -21,6 +21,9 @@ mod majorization_tests;
 mod options;
 mod solver;
 mod system;
+mod turns;
+#[cfg(test)]
+mod turns_tests;
 
 pub use hybrid::Hybrid;
 pub use options::NewtonOptions;

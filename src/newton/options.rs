@@ -17,6 +17,9 @@ pub struct NewtonOptions {
     /// The longest step, from 1: a majorizer is stiffer than what it majorizes, so that the energy often
     /// goes on falling beyond its minimum.
     pub longest: f64,
+    /// In the plane: do triangles turn along a step? Then strips unroll in a few steps; each costs two or three
+    /// solves with a Laplacian more.
+    pub turning: bool,
     /// Stop when |ΔE|/(|E| + floor of the energy) or |∇E| is below this.
     pub tolerance: f64,
     /// Stop after this many iterations.
@@ -30,6 +33,7 @@ impl Default for NewtonOptions {
             decrease: 1e-4,
             longest: 8.0,
             shift: 1e-14,
+            turning: false,
             tolerance: 1e-11,
             max_iterations: 5000,
         }

@@ -1,14 +1,16 @@
 //! The iteration.
 
 mod attempts;
+mod curve;
 mod handles;
 mod search;
 
-use self::attempts::Tried;
+use self::attempts::{FIRST_PART, Tried};
 use super::NewtonOptions;
 use super::curvature::{Curvature, OnCorners, Projected};
 use super::majorization::CompositeMajorization;
 use super::system::NewtonSystem;
+use super::turns::Turns;
 use crate::energy::{Energy, SymmetricDirichlet};
 use crate::geometry::Elimination;
 use crate::optim::vectors::dot;
@@ -38,6 +40,8 @@ pub struct Newton {
     curvature: Box<dyn Curvature>,
     evaluation: Evaluation,
     system: NewtonSystem,
+    /// Where elements turn along a step.
+    turns: Option<Turns>,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
     /// Number of unknowns, which come first in what is by slot.
@@ -160,6 +164,11 @@ impl Newton {
             proximal,
             &options,
         )?;
+        let planar = evaluation.shape.dimension == 2;
+        let turns = match options.turning && planar {
+            true => Some(Turns::new(problem.rest, &elimination, &evaluation)?),
+            false => None,
+        };
         let yardstick = evaluation.yardstick();
         let constants = &evaluation.shape.constants;
         let measure: f64 = problem.rest.measure.iter().sum();
@@ -172,6 +181,7 @@ impl Newton {
             bounds: vec![1.0; evaluation.blocks.len()],
             evaluation,
             system,
+            turns,
             slot: elimination.slot,
             unknowns,
             x: vec![0.0; length],
@@ -181,7 +191,7 @@ impl Newton {
             trial_gradient: vec![0.0; unknowns],
             direction: vec![0.0; length],
             near: false,
-            kept: 1.0,
+            kept: FIRST_PART,
             yardstick,
             energy: f64::INFINITY,
             report: StepReport::at_start(),

@@ -8,7 +8,7 @@ use crate::optim::BuildError;
 use crate::parallel;
 use crate::quasi_newton::evaluation::Evaluation;
 use crate::wrapd::External;
-use crate::wrapd::block::BLOCK;
+use crate::wrapd::block::{BLOCK, Row};
 
 /// By how much a shift that was too small grows,
 const GROWTH: f64 = 100.0;
@@ -88,14 +88,24 @@ impl NewtonSystem {
         })
     }
 
-    /// Sets the values at the F of the last evaluation.
-    pub fn assemble(&mut self, evaluation: &Evaluation, curvature: &dyn Curvature, kept: f64) {
+    /// Sets the values at the F of the last evaluation; `unbalanced`, where elements turn, is that of
+    /// [`super::turns`].
+    pub fn assemble(
+        &mut self,
+        evaluation: &Evaluation,
+        curvature: &dyn Curvature,
+        unbalanced: Option<&[Row]>,
+        kept: f64,
+    ) {
         let d = evaluation.shape.dimension;
         let elements = evaluation.elements();
         let blocks = &evaluation.blocks;
         parallel::for_each_chunk(&mut self.blocks, BLOCK * stride(d), |i, out| {
             let count = BLOCK.min(elements - i * BLOCK);
-            curvature.fill(&blocks[i], count, kept, out);
+            match unbalanced {
+                Some(rows) => curvature.fill_turning(&blocks[i], &rows[i], count, kept, out),
+                None => curvature.fill(&blocks[i], count, kept, out),
+            }
         });
         let springs = evaluation.terms.as_ref().map(|t| &t.spring_stiffness);
         let proximal = self.proximal;

@@ -148,15 +148,35 @@ impl Evaluation {
     /// Adds the energy's corner forces, which follow those of the coupling, up at the free vertices.
     fn gather<const DIM: usize, const STRIDE: usize>(&self, gradient: &mut [f64]) {
         let forces = self.forces.as_chunks::<STRIDE>().0;
-        let (begin, corners) = (&self.corner_begin, &self.corners);
         let external = self.terms.as_ref().map(|t| t.gradient.as_chunks::<DIM>().0);
-        parallel::for_each_chunk(gradient, VERTICES * DIM, |chunk, out| {
-            for (local, g) in out.as_chunks_mut::<DIM>().0.iter_mut().enumerate() {
+        self.add_corners::<DIM>(
+            |v| external.map_or([0.0; DIM], |external| external[v]),
+            |corner| &forces[corner][DIM..],
+            gradient,
+        );
+    }
+
+    /// Adds planar corner forces up at the free vertices.
+    pub fn gather_planar(&self, forces: &[f64], out: &mut [f64]) {
+        let forces = forces.as_chunks::<2>().0;
+        self.add_corners::<2>(|_| [0.0; 2], |corner| &forces[corner], out);
+    }
+
+    /// Adds what corners have to what free vertices begin with.
+    fn add_corners<'a, const DIM: usize>(
+        &self,
+        first: impl Fn(usize) -> [f64; DIM] + Sync + Send,
+        of: impl Fn(usize) -> &'a [f64] + Sync + Send,
+        out: &mut [f64],
+    ) {
+        let (begin, corners) = (&self.corner_begin, &self.corners);
+        parallel::for_each_chunk(out, VERTICES * DIM, |chunk, out| {
+            for (local, sum) in out.as_chunks_mut::<DIM>().0.iter_mut().enumerate() {
                 let v = chunk * VERTICES + local;
-                *g = external.map_or([0.0; DIM], |external| external[v]);
+                *sum = first(v);
                 for &corner in &corners[begin[v] as usize..begin[v + 1] as usize] {
-                    for (g, force) in g.iter_mut().zip(&forces[corner as usize][DIM..]) {
-                        *g += force;
+                    for (sum, force) in sum.iter_mut().zip(of(corner as usize)) {
+                        *sum += force;
                     }
                 }
             }

@@ -4,7 +4,7 @@
 //! solver knows more of dimension than the trait [`Space`].
 
 mod lane;
-mod plane;
+pub(crate) mod plane;
 mod registers;
 mod sheet;
 mod solid;

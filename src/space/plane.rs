@@ -37,7 +37,7 @@ fn polar_form<L: Lane>(re: L, im: L) -> (L, L, [L; 2]) {
 
 /// (α, β) of a matrix stored by columns.
 #[inline(always)]
-fn split<L: Lane>([a, c, b, d]: [L; 4]) -> ([L; 2], [L; 2]) {
+pub(crate) fn split<L: Lane>([a, c, b, d]: [L; 4]) -> ([L; 2], [L; 2]) {
     let half = a.lift(0.5);
     (
         [half * (a + d), half * (c - b)],
@@ -47,7 +47,7 @@ fn split<L: Lane>([a, c, b, d]: [L; 4]) -> ([L; 2], [L; 2]) {
 
 /// The matrix of (α, β), by columns.
 #[inline(always)]
-fn join<L: Lane>(alpha: [L; 2], beta: [L; 2]) -> [L; 4] {
+pub(crate) fn join<L: Lane>(alpha: [L; 2], beta: [L; 2]) -> [L; 4] {
     [
         alpha[0] + beta[0],
         alpha[1] + beta[1],
@@ -58,13 +58,13 @@ fn join<L: Lane>(alpha: [L; 2], beta: [L; 2]) -> [L; 4] {
 
 /// Complex product.
 #[inline(always)]
-fn mul<L: Lane>(x: [L; 2], y: [L; 2]) -> [L; 2] {
+pub(crate) fn mul<L: Lane>(x: [L; 2], y: [L; 2]) -> [L; 2] {
     [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]]
 }
 
 /// Complex product x̄ y.
 #[inline(always)]
-fn conj_mul<L: Lane>(x: [L; 2], y: [L; 2]) -> [L; 2] {
+pub(crate) fn conj_mul<L: Lane>(x: [L; 2], y: [L; 2]) -> [L; 2] {
     [x[0] * y[0] + x[1] * y[1], x[0] * y[1] - x[1] * y[0]]
 }
 

@@ -84,7 +84,7 @@ fn corner<S: Space, V: Simd>(
 
 /// F of the elements from `at` on: [x₁−x₀ … x_k−x₀] Dm⁻¹.
 #[inline(always)]
-fn deformation_gradient<S: Space, V: Simd>(
+pub(crate) fn deformation_gradient<S: Space, V: Simd>(
     simd: V,
     block: &Block,
     positions: &[f64],
@@ -119,11 +119,11 @@ fn deformation_gradient<S: Space, V: Simd>(
 }
 
 /// A vector a corner.
-type Corners<V> = [[Pack<V>; 3]; 4];
+pub(crate) type Corners<V> = [[Pack<V>; 3]; 4];
 
 /// The forces of scale · M on the corners: f_v = M g_v, f_0 = −Σ f_v.
 #[inline(always)]
-fn spread<S: Space, V: Simd>(
+pub(crate) fn spread<S: Space, V: Simd>(
     simd: V,
     block: &Block,
     m: S::Gradient<Pack<V>>,
@@ -151,7 +151,7 @@ fn spread<S: Space, V: Simd>(
 
 /// Writes corner forces: K vectors a corner, side by side.
 #[inline(always)]
-fn store_corners<S: Space, V: Simd, const K: usize>(
+pub(crate) fn store_corners<S: Space, V: Simd, const K: usize>(
     vectors: [Corners<V>; K],
     forces: &mut [f64],
     at: usize,

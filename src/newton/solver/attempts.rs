@@ -9,8 +9,14 @@ use crate::optim::{Phase, SolveError, Stopwatch};
 /// sum was not definite. That shows early in the factorisation, mostly, and costs little.
 const MOST_PARTS: u32 = 3;
 
-/// From one to the next, and, where the first was definite, for the next iteration.
+/// The first, where the Hessian is first tried,
+pub(super) const FIRST_PART: f64 = 0.25;
+
+/// from one to the next,
 const PARTS_RATIO: f64 = 0.5;
+
+/// and, where the first was definite, for the next iteration.
+const PARTS_GROWTH: f64 = 4.0;
 
 /// The least part that is tried.
 const LEAST_PART: f64 = 0.1;
@@ -47,7 +53,7 @@ impl Newton {
             let tried = self.attempt(self.kept, 0.0, iteration, phases)?;
             if tried.found.is_some() {
                 if part == 0 {
-                    self.kept = (self.kept / PARTS_RATIO).min(1.0);
+                    self.kept = (self.kept * PARTS_GROWTH).min(1.0);
                 }
                 return Ok(tried);
             }
@@ -96,8 +102,12 @@ impl Newton {
             phase.milliseconds += clock.milliseconds();
         };
         let clock = Stopwatch::start();
+        let unbalanced = self
+            .turns
+            .as_mut()
+            .map(|turns| turns.unbalanced(&self.evaluation, &self.gradient));
         self.system
-            .assemble(&self.evaluation, &*self.curvature, kept);
+            .assemble(&self.evaluation, &*self.curvature, unbalanced, kept);
         add(local, 1, clock);
         let clock = Stopwatch::start();
         let factored = match kept > 0.0 {
@@ -118,7 +128,7 @@ impl Newton {
         add(global, 1, clock);
         let clock = Stopwatch::start();
         let (found, trials) = match slope < 0.0 {
-            true => self.search(slope),
+            true => self.search_turning(slope),
             false => (None, 0),
         };
         add(evaluate, trials, clock);

@@ -30,7 +30,7 @@ pub(super) struct Found {
 
 impl Newton {
     /// The longest step that inverts nothing, if inverting costs.
-    fn longest_step(&mut self) -> f64 {
+    pub(super) fn longest_step(&mut self) -> f64 {
         let longest = self.options.longest;
         if !self.evaluation.shape.barrier {
             return longest;
@@ -47,7 +47,7 @@ impl Newton {
     }
 
     /// Evaluates a step along the direction, into `trial` and `trial_gradient`.
-    fn try_step(&mut self, step: f64) -> Value {
+    pub(super) fn try_step(&mut self, step: f64) -> Value {
         let along = core::iter::once((step, &self.direction[..self.unknowns]));
         set_combination(
             (1.0, &self.x[..self.unknowns]),
