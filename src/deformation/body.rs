@@ -179,16 +179,9 @@ impl Body<'_> {
     /// The stiffness of a target's spring at each vertex: in proportion to the diagonal of the body's
     /// stiffness matrix at rest.
     fn spring_stiffness(&self, rest_stiffness: f64) -> Vec<f64> {
-        let shape = self.shape;
-        let mut stiffness = vec![0.0; self.start.len()];
-        for e in 0..shape.len() {
-            for (corner, &v) in shape.simplex(e).iter().enumerate() {
-                stiffness[v as usize] += self.target_stiffness
-                    * rest_stiffness
-                    * shape.measure[e]
-                    * shape.hat_product(e, corner, corner);
-            }
-        }
+        let weight = self.target_stiffness * rest_stiffness;
+        let mut stiffness = self.shape.laplacian_diagonal(self.start.len());
+        stiffness.iter_mut().for_each(|k| *k *= weight);
         stiffness
     }
 }

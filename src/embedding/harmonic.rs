@@ -34,12 +34,35 @@ fn weighted(
     boundary: &[u32],
     weights: &[[f64; 3]],
 ) -> Result<Vec<DVec2>, BuildError> {
-    let n = mesh.positions.len();
+    let circle = boundary_to_circle(mesh, boundary);
+    let fixed: Vec<_> = boundary.iter().copied().zip(circle).collect();
+    extension(rest, mesh.positions.len(), &fixed, weights)
+}
+
+/// The vectors at these vertices, and harmonically what they make of all others.
+///
+/// # Errors
+/// `TooLarge`; `NotPositiveDefinite` where a part of the surface has none of them.
+pub fn harmonic_extension(
+    rest: &RestShape,
+    vertices: usize,
+    fixed: &[(u32, DVec2)],
+) -> Result<Vec<DVec2>, BuildError> {
+    extension(rest, vertices, fixed, &cotangent_weights(rest))
+}
+
+fn extension(
+    rest: &RestShape,
+    n: usize,
+    fixed: &[(u32, DVec2)],
+    weights: &[[f64; 3]],
+) -> Result<Vec<DVec2>, BuildError> {
     let mut map = vec![DVec2::ZERO; n];
-    for (&v, p) in boundary.iter().zip(boundary_to_circle(mesh, boundary)) {
+    for &(v, p) in fixed {
         map[v as usize] = p;
     }
-    let Elimination { slot, free, levels } = Elimination::new(rest, n, boundary);
+    let pins: Vec<u32> = fixed.iter().map(|&(v, _)| v).collect();
+    let Elimination { slot, free, levels } = Elimination::new(rest, n, &pins);
     let is_free = |slot: u32| (slot as usize) < free;
 
     // each edge of each element: both diagonals and the off-diagonal entry

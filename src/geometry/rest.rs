@@ -171,6 +171,17 @@ impl RestShape {
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
     }
 
+    /// The diagonal of Σ A DᵀD (5a), by vertex.
+    pub fn laplacian_diagonal(&self, vertices: usize) -> Vec<f64> {
+        let mut diagonal = vec![0.0; vertices];
+        for e in 0..self.len() {
+            for (corner, &v) in self.simplex(e).iter().enumerate() {
+                diagonal[v as usize] += self.measure[e] * self.hat_product(e, corner, corner);
+            }
+        }
+        diagonal
+    }
+
     /// Every pair of corners of every element, the diagonal included, as (corner, corner, element)
     /// with vertex indices.
     pub fn pairs(&self) -> impl Iterator<Item = (u32, u32, u32)> + Clone + '_ {

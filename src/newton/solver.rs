@@ -166,7 +166,7 @@ impl Newton {
         )?;
         let planar = evaluation.shape.dimension == 2;
         let turns = match options.turning && planar {
-            true => Some(Turns::new(problem.rest, &elimination, &evaluation)?),
+            true => Some(Turns::new(&problem, &elimination, &evaluation)?),
             false => None,
         };
         let yardstick = evaluation.yardstick();

@@ -4,7 +4,7 @@
 //! without any resistance, can do so by small steps only. Here every triangle turns, with what else the
 //! direction does to it carried along: F̂(t) = R(ωt) (F + t (D − ωJF)), D the change of F along d and J the
 //! quarter turn. Vertices go where gradients fit best, x(t) = x + t d + A⁻¹ Σ A_e Gᵀ (F̂(t) − F − tD), A the
-//! Laplacian at rest: the global step of ADMM-PD. The curve leaves x along d.
+//! Laplacian at rest with what else holds vertices: the global step of ADMM-PD. The curve leaves x along d.
 //!
 //! The second derivative of the energy along it is not dᵀHd, but that and ∇E · x''(0), where x'' is −ω²F projected
 //! on what is a gradient. With λ = A⁻¹ ∇E that makes −Σ A_e ω² ∇λ : F: of the stress P, the part ∇λ that is not in
@@ -14,12 +14,13 @@
 //! R(ωt) is (1 + iωt/2)/(1 − iωt/2) as a complex number: the rotation to second order, less than half a turn,
 //! without a trigonometric function.
 
-use crate::geometry::{Elimination, RestShape};
+use crate::geometry::Elimination;
 use crate::optim::BuildError;
 use crate::parallel;
 use crate::quasi_newton::evaluation::Evaluation;
 use crate::space::plane::{conj_mul, join, mul, split};
 use crate::space::{Lane, Pack, Plane, Scalar, dispatch};
+use crate::wrapd::Problem;
 use crate::wrapd::block::{BLOCK, Block, Row, load, packs};
 use crate::wrapd::kernels::{deformation_gradient, spread, store_corners};
 use crate::wrapd::system::System;
@@ -33,8 +34,10 @@ const TINY: f64 = 1e-290;
 
 /// The curves, and what of the stress is out of equilibrium.
 pub struct Turns {
-    /// The Laplacian at rest.
+    /// The Laplacian at rest, and the springs.
     system: System,
+    /// Its factor.
+    stiffness: f64,
     unknowns: usize,
     /// By slot, 0 for the pinned: λ, or what turning adds to a step.
     field: Vec<f64>,
@@ -52,17 +55,19 @@ impl Turns {
     /// # Errors
     /// `TooLarge`, and `NotPositiveDefinite` where nothing holds a part of the map.
     pub fn new(
-        rest: &RestShape,
+        problem: &Problem,
         elimination: &Elimination,
         evaluation: &Evaluation,
     ) -> Result<Self, BuildError> {
-        let mut system = System::new(rest, elimination, None)?;
+        let stiffness = evaluation.shape.constants.rest_stiffness;
+        let mut system = System::new(problem.rest, elimination, problem.external)?;
         system
-            .factorize(None, |_| 1.0)
+            .factorize(evaluation.terms.as_ref(), |_| stiffness)
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
         let blocks = evaluation.blocks.len();
         Ok(Self {
             system,
+            stiffness,
             unknowns: 2 * elimination.free,
             field: vec![0.0; 2 * elimination.slot.len()],
             forces: vec![0.0; FORCES * blocks],
@@ -77,11 +82,12 @@ impl Turns {
         free.copy_from_slice(gradient);
         pinned.fill(0.0);
         self.system.factor.solve_in_place(free, 2);
-        let field = &self.field;
+        let (field, stiffness) = (&self.field, self.stiffness);
         parallel::for_each_chunk(&mut self.unbalanced, 1, |i, out| {
             dispatch(Unbalanced {
                 block: &evaluation.blocks[i],
                 field,
+                stiffness,
                 out: &mut out[0],
             });
         });
@@ -98,12 +104,14 @@ impl Turns {
         trial: &mut [f64],
     ) -> f64 {
         let (fastest, forces) = (&mut self.fastest, &mut self.forces);
+        let stiffness = self.stiffness;
         parallel::for_each_block(fastest, forces, FORCES, |i, fastest, forces| {
             *fastest = dispatch(Turn {
                 block: &evaluation.blocks[i],
                 x,
                 direction,
                 t,
+                stiffness,
                 forces,
             });
         });
@@ -120,6 +128,7 @@ impl Turns {
 struct Unbalanced<'a> {
     block: &'a Block,
     field: &'a [f64],
+    stiffness: f64,
     out: &'a mut Row,
 }
 
@@ -132,6 +141,7 @@ impl WithSimd for Unbalanced<'_> {
             let f: [Pack<V>; 4] = load(simd, &self.block.gradient, at);
             let g = deformation_gradient::<Plane, V>(simd, self.block, self.field, at);
             let sum = (f[0] * g[0] + f[1] * g[1]) + (f[2] * g[2] + f[3] * g[3]);
+            let sum = Pack::splat(simd, self.stiffness) * sum;
             sum.store(&mut self.out[at..at + Pack::<V>::WIDTH]);
         }
     }
@@ -142,6 +152,7 @@ struct Turn<'a> {
     x: &'a [f64],
     direction: &'a [f64],
     t: f64,
+    stiffness: f64,
     forces: &'a mut [f64],
 }
 
@@ -189,7 +200,8 @@ impl WithSimd for Turn<'_> {
                 ],
             );
             let [area]: [Pack<V>; 1] = load(simd, &self.block.measure, at);
-            let corners = spread::<Plane, V>(simd, self.block, residual, area, at);
+            let scale = area * t.lift(self.stiffness);
+            let corners = spread::<Plane, V>(simd, self.block, residual, scale, at);
             store_corners::<Plane, V, 1>([corners], self.forces, at);
         }
         fastest.fold(f64::max)

@@ -8,9 +8,9 @@ use crate::geometry::{Elimination, RestShape};
 use crate::mesh::SurfaceMesh;
 use crate::quasi_newton::evaluation::Evaluation;
 use crate::space::Plane;
-use crate::wrapd::Linear;
 use crate::wrapd::block::BLOCK;
 use crate::wrapd::elements::{Model, Shape};
+use crate::wrapd::{Linear, Problem};
 use glam::DVec3;
 
 /// A strip of n × 2 squares, cut into triangles, bent and stretched somewhat.
@@ -46,8 +46,14 @@ fn strip(n: usize) -> Strip {
         x[2 * s as usize] = radius * angle.sin();
         x[2 * s as usize + 1] = -radius * angle.cos();
     }
+    let problem = Problem {
+        rest: &rest,
+        start: &[],
+        pins: &[4],
+        external: None,
+    };
     Strip {
-        turns: Turns::new(&rest, &elimination, &evaluation).unwrap(),
+        turns: Turns::new(&problem, &elimination, &evaluation).unwrap(),
         evaluation,
         elimination,
         x,

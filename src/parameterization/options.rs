@@ -97,6 +97,8 @@ pub struct ParameterizationOptions {
     pub max_iterations: usize,
     /// Seed of the random start.
     pub seed: u32,
+    /// How hard landmarks that are not held pull, relative to how hard the surface holds on to a vertex.
+    pub landmark_stiffness: f64,
 }
 
 impl Default for ParameterizationOptions {
@@ -109,6 +111,7 @@ impl Default for ParameterizationOptions {
             tolerance: 1e-6,
             max_iterations: 5000,
             seed: 1,
+            landmark_stiffness: 10.0,
         }
     }
 }
@@ -123,6 +126,13 @@ impl ParameterizationOptions {
             return Err(BuildError::InvalidOption {
                 option: "tolerance",
                 what: format!("{} is not a finite number of at least 0", self.tolerance),
+            });
+        }
+        let stiff = self.landmark_stiffness > 0.0 && self.landmark_stiffness.is_finite();
+        if !stiff {
+            return Err(BuildError::InvalidOption {
+                option: "landmarkStiffness",
+                what: format!("{} is not a finite number above 0", self.landmark_stiffness),
             });
         }
         let majorizes = matches!(self.method, Method::Cm | Method::WrapdCm);

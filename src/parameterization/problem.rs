@@ -1,5 +1,6 @@
 //! A mesh, made ready, and the solver that flattens it.
 
+use super::landmarks::{Landmark, Landmarks};
 use super::starts::start;
 use super::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use crate::Error;
@@ -115,8 +116,24 @@ impl Parameterization {
     /// [`MeshError`] for a mesh that cannot be flattened, [`BuildError`] for options out of range or a
     /// problem too large for the memory.
     pub fn new(mesh: &SurfaceMesh, options: &ParameterizationOptions) -> Result<Self, Error> {
+        Self::with_landmarks(mesh, options, &[])
+    }
+
+    /// The same with places for some vertices: pulled there, or held. The start is turned and shifted to where
+    /// they are, and held vertices take others with them; that may invert triangles, which the methods that begin
+    /// with ADMM mend and the others refuse. Without any, the vertex at the middle of the start is held.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; `InvalidOption` for landmarks that name no vertex, or one twice, or one on a seam, and for
+    /// methods that know none.
+    pub fn with_landmarks(
+        mesh: &SurfaceMesh,
+        options: &ParameterizationOptions,
+        landmarks: &[Landmark],
+    ) -> Result<Self, Error> {
         let clock = Stopwatch::start();
         options.validate()?;
+        let vertices = mesh.positions.len();
         let Disk {
             mesh,
             topology,
@@ -139,17 +156,32 @@ impl Parameterization {
             Start::Automatic if direct => Start::Collapsed,
             kind => kind,
         };
-        let (map, start_kind) = start(wanted, options.seed, &mesh, &rest, boundary)?;
+        if !landmarks.is_empty() && (direct || options.method == Method::Arap) {
+            return Err(BuildError::InvalidOption {
+                option: "landmarks",
+                what: "are for the ADMM methods, cm, wrapd+cm and slim".into(),
+            }
+            .into());
+        }
+        let landmarks = Landmarks::new(landmarks, vertices, &input_vertices, scale)?;
+        let (mut map, start_kind) = start(wanted, options.seed, &mesh, &rest, boundary)?;
         if options.start == Start::Automatic && start_kind == Start::Tutte {
             notes.push("the harmonic start has flips: Tutte's embedding instead".into());
         }
+        let external = landmarks.external(&rest, map.len(), 8.0 * options.landmark_stiffness);
+        let pins = match landmarks.is_empty() {
+            true => vec![central_vertex(&map)],
+            false => {
+                landmarks.apply(&rest, &mut map)?;
+                landmarks.pins()
+            }
+        };
         let positions = interleave(&map);
-        let pins = [central_vertex(&map)];
         let problem = Problem {
             rest: &rest,
             start: &positions,
             pins: &pins,
-            external: None,
+            external: external.as_ref(),
         };
         let solver: Box<dyn Solver> = match options.method {
             Method::Wrapd | Method::RAdmm | Method::WAdmm | Method::AdmmPd => {

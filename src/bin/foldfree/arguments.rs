@@ -63,6 +63,16 @@ pub struct Parameterize {
     /// Seed of the random start.
     #[arg(long, value_name = "S", default_value_t = ParameterizationOptions::default().seed)]
     pub seed: u32,
+    /// Places that vertices are pulled to in the plane: a text file of lines `index u v`, the first vertex being 0,
+    /// in the units of the mesh.
+    #[arg(long, value_name = "L")]
+    pub landmarks: Option<PathBuf>,
+    /// Hold the vertices of --landmarks at their places instead of pulling at them.
+    #[arg(long, requires = "landmarks")]
+    pub hard: bool,
+    /// How hard landmarks pull, relative to how hard the surface holds on to a vertex.
+    #[arg(long, value_name = "K", default_value_t = ParameterizationOptions::default().landmark_stiffness, value_parser = positive)]
+    pub landmark_stiffness: f64,
     /// WRAPD without rotation awareness (the paper's W-ADMM).
     #[arg(long)]
     pub no_rotation_aware: bool,
@@ -300,6 +310,7 @@ impl Parameterize {
             }
         };
         Ok(ParameterizationOptions {
+            landmark_stiffness: self.landmark_stiffness,
             method,
             energy: self.energy,
             start: self.start,

@@ -5,12 +5,12 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::reference::Reference;
 use crate::report::{self, Iteration, ParameterizeReport};
-use crate::{Outcome, files, say};
+use crate::{Outcome, files, handles, say};
 use foldfree::mesh::SurfaceMesh;
 use foldfree::mesh::io::{CornerTexture, Format, write_obj};
 use foldfree::optim::Stopwatch;
 use foldfree::optim::{CancelToken, Solver, Status};
-use foldfree::parameterization::Parameterization;
+use foldfree::parameterization::{Landmark, Parameterization};
 use glam::DVec2;
 use std::path::Path;
 
@@ -27,7 +27,12 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
     let input = files::read_mesh(&arguments.input)?;
     let read_seconds = clock.seconds();
     let of_input = |error: foldfree::Error| Failure::of_file(&arguments.input, error);
-    let mut map = Parameterization::new(&input.mesh, &options).map_err(of_input)?;
+    let landmarks = match &arguments.landmarks {
+        Some(path) => read_landmarks(path, input.mesh.positions.len(), arguments.hard)?,
+        None => Vec::new(),
+    };
+    let mut map =
+        Parameterization::with_landmarks(&input.mesh, &options, &landmarks).map_err(of_input)?;
     let reference = match &arguments.reference {
         Some(path) => Some(Reference::read(path, &input.mesh, &map)?),
         None => None,
@@ -107,6 +112,16 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
         Status::Converged(_) => Outcome::Done,
         _ => Outcome::NotReached,
     })
+}
+
+fn read_landmarks(path: &Path, vertices: usize, hard: bool) -> Result<Vec<Landmark>, Failure> {
+    let targets = handles::read_targets(path, vertices)?;
+    let places = targets.iter().map(|target| Landmark {
+        vertex: target.vertex,
+        uv: target.position.truncate(),
+        hard,
+    });
+    Ok(places.collect())
 }
 
 /// Says before the work what would go wrong after it.
