@@ -18,12 +18,12 @@ export const DEFAULTS = Object.freeze({
 const CHOICES = {
   flatten: {
     start: ['automatic', 'harmonic', 'tutte', 'lscm', 'random', 'collapsed'],
-    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
+    method: ['wrapd', 'wrapd+cm', 'cm', 'slim', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
     energy: ['symmetric-dirichlet', 'arap'],
   },
   deform: {
     preset: ['held', 'squash', 'twist', 'random', 'collapse'],
-    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
+    method: ['wrapd', 'wrapd+newton', 'newton', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
     material: Object.keys(MATERIALS),
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
@@ -50,7 +50,8 @@ export function readAddress(mode = modeOf(), search = location.search) {
   const asked = new URLSearchParams(modeOf(search) === mode ? search : '');
   const state = { ...DEFAULTS[mode] };
   for (const [key, values] of Object.entries(CHOICES[mode])) {
-    if (values.includes(asked.get(key))) state[key] = asked.get(key);
+    const value = asked.get(key)?.replaceAll(' ', '+'); // a plus sign that was typed into the address is read as a space
+    if (values.includes(value)) state[key] = value;
   }
   for (const key of NAMES[mode]) {
     if (/^[a-z0-9-]{1,40}$/.test(asked.get(key) ?? '')) state[key] = asked.get(key);

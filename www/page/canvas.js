@@ -134,7 +134,7 @@ const single = (positions) => (positions instanceof Float32Array ? positions : F
 
 const numbers = (step) => Float64Array.of(
   step.iteration, step.energy, step.inverted, step.gradientNorm, step.smallestSigma, step.largestSigma,
-  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds,
+  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds, step.switchedAt ?? -1,
 );
 
 const phases = (step) => Float64Array.from(

@@ -5,7 +5,7 @@ import { readMeshFile, save } from './files.js';
 import { Mode } from './mode.js';
 import { describe } from './notice.js';
 import { Session } from './session.js';
-import { METHODS, ending, number, whole } from './words.js';
+import { FOLDED_STARTS, MAJORIZES, METHODS, NEEDS_INJECTIVE, ending, number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const DIRECT = ['lscm', 'harmonic', 'tutte'];
@@ -105,7 +105,7 @@ export class Flatten extends Mode {
     $('triangles').disabled = Boolean(source.bytes);
     const direct = DIRECT.includes(wanted.method);
     $('start').disabled = direct;
-    $('energy').disabled = direct || wanted.method === 'arap';
+    $('energy').disabled = direct || wanted.method === 'arap' || MAJORIZES.includes(wanted.method);
   }
 
   /** Solves `next` instead of what is on the bench; on failure the bench stays as it is. */
@@ -157,7 +157,12 @@ export class Flatten extends Mode {
   }
 
   async change(key, value) {
-    this.wanted[key] = value;
+    const { wanted } = this;
+    wanted[key] = value;
+    if (MAJORIZES.includes(wanted.method)) wanted.energy = 'symmetric-dirichlet';
+    // Who picks such a method wants to see it run, not to be told off.
+    const impossible = NEEDS_INJECTIVE.includes(wanted.method) && wanted.energy === 'symmetric-dirichlet' && FOLDED_STARTS.includes(wanted.start);
+    if (impossible && key !== 'start') wanted.start = 'automatic';
     this.reflect();
     if (!this.whenReady(() => this.open())) return;
     await this.open();

@@ -24,8 +24,18 @@ export function spoken(record) {
 /** Names of methods, as people write them. */
 export const METHODS = {
   wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', 'l-bfgs': 'L-BFGS', arap: 'ARAP',
+  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton',
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
+
+/** Methods that cannot begin at a start with inverted triangles, unless the energy allows it. */
+export const NEEDS_INJECTIVE = ['cm', 'slim'];
+
+/** Methods that minimise symmetric Dirichlet alone. */
+export const MAJORIZES = ['cm', 'wrapd+cm'];
+
+/** Starts that are full of inversions. */
+export const FOLDED_STARTS = ['random', 'collapsed'];
 
 /** Why a run ended. */
 export function ending(step) {

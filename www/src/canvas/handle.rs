@@ -69,8 +69,8 @@ impl BenchHandle {
         self.change(|bench| bench.begin_run(method, start, energy));
     }
 
-    /// Adds an iterate: nine numbers (iteration, energy, inverted, gradient norm, smallest σ,
-    /// largest σ, L-BFGS iterations, reweighted, seconds), three numbers a phase (kind, count,
+    /// Adds an iterate: ten numbers (iteration, energy, inverted, gradient norm, smallest σ, largest σ,
+    /// L-BFGS iterations, reweighted, seconds, iteration of the switch or −1), three numbers a phase (kind, count,
     /// milliseconds), and the map (n×2).
     #[wasm_bindgen(js_name = pushFrame)]
     pub fn push_frame(&self, numbers: &[f64], phases: &[f64], map: Vec<f32>) {

@@ -7,7 +7,7 @@ use super::style;
 use crate::colour::curve_style;
 use crate::history::{Phase, PhaseKind};
 use crate::scale::number;
-use crate::words::{citation, explain, method_name};
+use crate::words::{citation, explain, handover, method_name, stage};
 
 /// Writes lines from the top down.
 struct Column<'a> {
@@ -123,7 +123,7 @@ impl Column<'_> {
     /// The phases of the iteration on show.
     fn step(&mut self) {
         let nouns = self.bench.nouns();
-        let method = self.bench.run.method.as_str();
+        let run = self.bench.run.method.as_str();
         let Some(record) = self.bench.record() else {
             self.section("This step", "");
             return;
@@ -131,23 +131,13 @@ impl Column<'_> {
         if record.iteration == 0 {
             self.section(
                 "The start",
-                &format!("{}, {}", method_name(method), citation(method)),
+                &format!("{}, {}", method_name(run), citation(run)),
             );
-            let words = "No step has been made. Play or step to see what an iteration does.";
-            let font = style::regular(style::SMALL * self.bench.text);
-            let quiet = style::colour(self.bench.theme.quiet);
-            let galley =
-                self.ui
-                    .painter()
-                    .layout(words.into(), font, quiet, self.right - self.left);
-            let height = galley.size().y;
-            self.ui
-                .painter()
-                .galley(pos2(self.left, self.y), galley, quiet);
-            self.y += height;
+            self.words("No step has been made. Play or step to see what an iteration does.");
             self.rule();
             return;
         }
+        let method = stage(run, record.iteration, record.switched_at);
         let title = format!("Iteration {}", record.iteration);
         self.section(
             &title,
@@ -247,7 +237,21 @@ impl Column<'_> {
         if matches!(method, "wrapd" | "w-admm") {
             self.pair("weights", weights, &format!("Weights change only when that of some {} is off by more than γ = 1.5, equation (23); then the Laplacian is factored again and the L-BFGS history is dropped.", nouns.element));
         }
+        if let Some(words) = handover(run, record.switched_at) {
+            self.words(&words);
+        }
         self.rule();
+    }
+
+    /// A sentence or two over the width of the column.
+    fn words(&mut self, words: &str) {
+        let font = style::regular(style::SMALL * self.bench.text);
+        let quiet = style::colour(self.bench.theme.quiet);
+        let painter = self.ui.painter();
+        let galley = painter.layout(words.into(), font, quiet, self.right - self.left);
+        let height = galley.size().y;
+        painter.galley(pos2(self.left, self.y), galley, quiet);
+        self.y += height;
     }
 
     /// The numbers of the iterate on show.

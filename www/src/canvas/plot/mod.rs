@@ -2,6 +2,7 @@
 //! stretch of a solid on a log scale of its own, at the right.
 
 mod names;
+mod switch;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
@@ -169,6 +170,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     } else {
         names::of_methods(&painter, &frame, bench);
     }
+    let y = |r: &Record| frame.energy(r).and_then(|v| frame.y(v));
+    switch::mark(&painter, &frame, bench, records, y);
     cursor(ui, rect, &frame, bench);
 }
 
