@@ -18,7 +18,7 @@ export function whole(value) {
 
 /** "iteration 12, energy 1.043, 0 inverted": what a screen reader hears. */
 export function spoken(record) {
-  return `iteration ${record.iteration}, energy ${number(record.energy)}, ${record.inverted} inverted`;
+  return record.spoken ?? `iteration ${record.iteration}, energy ${number(record.energy)}, ${record.inverted} inverted`;
 }
 
 /** Names of methods, as people write them. */

@@ -241,7 +241,7 @@ describe('opening', () => {
     assert.equal((await status(page)).iteration, 0);
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
-    await page.keyboard.press('m');
+    await page.click('[data-mode-button="flatten"]');
     assert.equal((await status(page)).text, before.text);
     assert.doesNotMatch(page.url(), /mode=/);
     assert.ok(await page.isHidden('#presets') && await page.isVisible('#sample'));

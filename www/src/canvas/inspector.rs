@@ -10,12 +10,12 @@ use crate::scale::number;
 use crate::words::{citation, explain, handover, method_name, stage};
 
 /// Writes lines from the top down.
-struct Column<'a> {
+pub(super) struct Column<'a> {
     ui: &'a mut egui::Ui,
     bench: &'a Bench,
-    left: f32,
-    right: f32,
-    y: f32,
+    pub(super) left: f32,
+    pub(super) right: f32,
+    pub(super) y: f32,
 }
 
 /// Draws the view.
@@ -25,13 +25,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         .auto_shrink(false)
         .show(ui, |ui| {
             let top = ui.cursor().top();
-            let mut column = Column {
-                bench,
-                left: rect.left() + 16.0,
-                right: rect.right() - 16.0,
-                y: top + 10.0,
-                ui,
-            };
+            let mut column = Column::new(ui, bench, rect, top + 10.0);
             column.step();
             column.iterate();
             clear = column.runs();
@@ -52,8 +46,30 @@ fn capital(word: &str) -> String {
         .unwrap_or_default()
 }
 
-impl Column<'_> {
-    fn text(&self, x: f32, y: f32, anchor: Align2, text: &str, medium: bool, quiet: bool) -> Rect {
+impl<'a> Column<'a> {
+    pub(super) fn new(ui: &'a mut egui::Ui, bench: &'a Bench, rect: Rect, y: f32) -> Self {
+        Self {
+            ui,
+            bench,
+            left: rect.left() + 16.0,
+            right: rect.right() - 16.0,
+            y,
+        }
+    }
+
+    pub(super) fn painter(&self) -> &egui::Painter {
+        self.ui.painter()
+    }
+
+    pub(super) fn text(
+        &self,
+        x: f32,
+        y: f32,
+        anchor: Align2,
+        text: &str,
+        medium: bool,
+        quiet: bool,
+    ) -> Rect {
         let theme = self.bench.theme;
         let size = self.bench.text * if quiet { style::SMALL } else { style::BODY };
         let font = if medium {
@@ -70,11 +86,11 @@ impl Column<'_> {
         )
     }
 
-    fn line(&self) -> f32 {
+    pub(super) fn line(&self) -> f32 {
         19.0 * self.bench.text
     }
 
-    fn section(&mut self, title: &str, rest: &str) {
+    pub(super) fn section(&mut self, title: &str, rest: &str) {
         let end = self.text(self.left, self.y, Align2::LEFT_TOP, title, true, false);
         if !rest.is_empty() {
             self.text(
@@ -89,7 +105,7 @@ impl Column<'_> {
         self.y = end.bottom() + 6.0;
     }
 
-    fn rule(&mut self) {
+    pub(super) fn rule(&mut self) {
         self.y += 6.0;
         let stroke = Stroke::new(1.0, style::colour(self.bench.theme.line));
         self.ui
@@ -98,7 +114,7 @@ impl Column<'_> {
         self.y += 11.0;
     }
 
-    fn pair(&mut self, name: &str, value: &str, hint: &str) {
+    pub(super) fn pair(&mut self, name: &str, value: &str, hint: &str) {
         let middle = self.y + 0.5 * self.line();
         let room = self.right - self.left;
         let first = self.text(self.left, middle, Align2::LEFT_CENTER, name, false, true);
@@ -244,7 +260,7 @@ impl Column<'_> {
     }
 
     /// A sentence or two over the width of the column.
-    fn words(&mut self, words: &str) {
+    pub(super) fn words(&mut self, words: &str) {
         let font = style::regular(style::SMALL * self.bench.text);
         let quiet = style::colour(self.bench.theme.quiet);
         let painter = self.ui.painter();
@@ -389,7 +405,7 @@ impl Column<'_> {
     }
 
     /// The problem.
-    fn facts(&mut self) {
+    pub(super) fn facts(&mut self) {
         if self.bench.facts.is_empty() {
             return;
         }

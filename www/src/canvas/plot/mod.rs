@@ -2,7 +2,7 @@
 //! stretch of a solid on a log scale of its own, at the right.
 
 mod names;
-mod switch;
+pub(super) mod switch;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
@@ -19,22 +19,29 @@ const LEAST_GAP: f64 = 1e-12;
 /// Energies of a solid below this part of the greatest are drawn at the bottom.
 const LEAST_OF_MOST: f64 = 1e-9;
 
-struct Frame {
-    area: Rect,
-    axis: LogAxis,
-    end: f64,
-    seconds: bool,
-    gap: Option<f64>,
-    floor: f32,
+/// Where things stand in a plot.
+pub(super) struct Frame {
+    /// Inside the axes.
+    pub area: Rect,
+    /// The height.
+    pub axis: LogAxis,
+    /// Where the width ends.
+    pub end: f64,
+    /// Whether the width is seconds.
+    pub seconds: bool,
+    /// The energy from which gaps count, where gaps are plotted.
+    pub gap: Option<f64>,
+    /// Room below the axis for what is zero.
+    pub floor: f32,
     /// Where the axis of the worst stretch ends, where it has one of its own; it begins at 1.
-    stretch: Option<f64>,
+    pub stretch: Option<f64>,
 }
 
 /// The ends an axis of stretches may have; their square roots are round, too.
 const STRETCH_ENDS: [f64; 7] = [1.21, 1.44, 2.25, 4.0, 9.0, 25.0, 100.0];
 
 impl Frame {
-    fn x(&self, record: &Record) -> f32 {
+    pub fn x(&self, record: &Record) -> f32 {
         let value = if self.seconds {
             record.seconds
         } else {
@@ -43,7 +50,7 @@ impl Frame {
         self.area.left() + self.area.width() * (value / self.end).clamp(0.0, 1.0) as f32
     }
 
-    fn y(&self, value: f64) -> Option<f32> {
+    pub fn y(&self, value: f64) -> Option<f32> {
         self.axis
             .position(value)
             .map(|t| self.area.bottom() - self.floor - t * (self.area.height() - self.floor))
@@ -72,7 +79,11 @@ impl Frame {
     }
 
     /// A curve of the records, at most one point a pixel (the worst of them), broken where undefined.
-    fn curve(&self, records: &[Record], height: impl Fn(&Record) -> Option<f32>) -> Vec<Vec<Pos2>> {
+    pub fn curve(
+        &self,
+        records: &[Record],
+        height: impl Fn(&Record) -> Option<f32>,
+    ) -> Vec<Vec<Pos2>> {
         let mut pieces: Vec<Vec<Pos2>> = vec![Vec::new()];
         for record in records {
             let point = height(record).map(|y| pos2(self.x(record), y));
@@ -221,7 +232,13 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 }
 
 /// Text that can be clicked; returns its right end and whether it was.
-fn toggle(ui: &mut egui::Ui, bench: &Bench, at: Pos2, text: &str, hint: &str) -> (f32, bool) {
+pub(super) fn toggle(
+    ui: &mut egui::Ui,
+    bench: &Bench,
+    at: Pos2,
+    text: &str,
+    hint: &str,
+) -> (f32, bool) {
     let font = style::regular(style::SMALL * bench.text);
     let galley =
         ui.painter()
@@ -294,7 +311,7 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
     frame
 }
 
-fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
+pub(super) fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
     let (theme, text) = (bench.theme, bench.text);
     let font = style::regular(style::SMALL * text);
     let quiet = style::colour(theme.quiet);
@@ -363,7 +380,7 @@ fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
     }
 }
 
-fn draw(
+pub(super) fn draw(
     painter: &egui::Painter,
     pieces: &[Vec<Pos2>],
     style: CurveStyle,
