@@ -6,7 +6,7 @@ import { Mode } from './mode.js';
 import { describe } from './notice.js';
 import { chosenSample, listSamples, reflectSource, titleOf } from './surface-controls.js';
 import { showPanes } from './views.js';
-import { METHODS, ending, number, whole } from './words.js';
+import { METHODS, duration, ending, number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -116,7 +116,7 @@ export class Compare extends Mode {
     const pairs = [
       ['surface', titleOf(this.source)],
       ['start of all', `${names[startKind] ?? startKind}, ${startInverted === 0 ? 'none' : whole(startInverted)} inverted`],
-      ['', startInverted === 0 ? 'every solver can begin there' : 'CM and SLIM cannot begin there'],
+      ['', startInverted > 0 && this.wanted.energy === 'symmetric-dirichlet' ? 'CM and SLIM cannot begin there' : 'every solver can begin there'],
       ['setup, apart', this.session.lanes.map((_, i) => (setupSeconds[i] === undefined ? '–' : number(1000 * setupSeconds[i], 2))).join(' · ') + ' ms'],
       ['threads', String(this.page.foldfree.threads)],
       ...notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
@@ -164,13 +164,16 @@ export class Compare extends Mode {
     const name = METHODS[lead.lane.method];
     const inverted = now.reduce((sum, { record }) => sum + record.inverted, 0);
     const where = session.clock === 'seconds'
-      ? `${number(moment.at, 3)} s${behind ? ` of ${number(newest.at, 3)} s` : ''}`
+      ? `${duration(moment.at)}${behind ? ` of ${duration(newest.at)}` : ''}`
       : `iteration ${moment.at}${behind ? ` of ${newest.at}` : ''}`;
-    const tied = moment.at === 0;
+    // Ahead of the others by more than rounding.
+    const ahead = lead.record.inverted === 0 && now.every(({ record }) => (
+      record === lead.record || record.inverted > 0 || record.energy - lead.record.energy > 1e-9 * Math.abs(lead.record.energy)
+    ));
     return {
       iteration: moment.at, energy: lead.record.energy, inverted, phases: [], seconds: 0, where,
-      whose: tied ? '' : `${name} lowest, `,
-      spoken: `${where}, ${tied ? '' : `${name} is lowest, `}energy ${number(lead.record.energy)}, ${inverted} inverted in all maps`,
+      lead: ahead ? name : undefined,
+      spoken: `${where}, ${ahead ? `${name} is lowest, ` : ''}energy ${number(lead.record.energy)}, ${inverted} inverted in all maps`,
     };
   }
 

@@ -10,6 +10,9 @@ export function number(value, digits = 4) {
   return value.toFixed(Math.max(digits - 1 - exponent, 0));
 }
 
+/** So many seconds, in milliseconds below one. */
+export const duration = (seconds) => (seconds < 1 ? `${number(1000 * seconds, 3)} ms` : `${number(seconds, 3)} s`);
+
 /** A whole number in groups of three. */
 export function whole(value) {
   const digits = String(Math.round(value));

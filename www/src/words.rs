@@ -113,6 +113,7 @@ pub fn handover(method: &str, switched_at: Option<u32>) -> Option<String> {
     let (first, then) = method.split_once('+')?;
     let (first, then) = (method_name(first), method_name(then));
     Some(match switched_at {
+        Some(1) => format!("{first} made iteration 1; {then} goes on from there."),
         Some(last) => format!("{first} made iterations 1 to {last}; {then} goes on from there."),
         None => {
             format!("{first} for now; {then} takes over at the first iterate without inversions.")
@@ -324,6 +325,7 @@ mod tests {
         let words = handover("wrapd+newton", Some(7)).unwrap_or_default();
         assert!(words.contains("1 to 7; Newton goes on"), "{words}");
         assert!(handover("wrapd+cm", None).is_some_and(|words| words.contains("CM takes over")));
+        assert!(handover("wrapd+cm", Some(1)).is_some_and(|words| words.contains("iteration 1;")));
         assert_eq!(handover("wrapd", None), None);
     }
 

@@ -10,7 +10,7 @@ use super::bench::{Bench, Event, PlotHeight};
 use super::style;
 use crate::colour::{CurveStyle, VERMILION, curve_style};
 use crate::history::Record;
-use crate::scale::{LogAxis, linear_ticks, number, power_of_ten};
+use crate::scale::{LogAxis, linear_ticks, number, power_of_ten, time_tick};
 use crate::words::energy_caption;
 
 /// The least relative gap that is drawn.
@@ -365,8 +365,8 @@ pub(super) fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
             [pos2(x, area.bottom()), pos2(x, area.bottom() + 4.0)],
             Stroke::new(1.0, quiet),
         );
-        let name = if frame.seconds && value > 0.0 {
-            format!("{} s", number(value, 2))
+        let name = if frame.seconds {
+            time_tick(value, frame.end)
         } else {
             format!("{value}")
         };

@@ -8,11 +8,21 @@ use crate::canvas::plot::{self, Frame, switch};
 use crate::canvas::style;
 use crate::colour::curve_style;
 use crate::history::Record;
-use crate::scale::{LogAxis, number};
+use crate::scale::{LogAxis, duration, number};
 use crate::words::{energy_caption, method_name};
 
 /// The least gap that is told from none: energies of order 1 are sums of thousands of rounded terms.
 const LEAST_GAP: f64 = 1e-13;
+
+/// A gap in words: what is less than rounding is none.
+pub fn gap_words(gap: f64) -> String {
+    number(if gap > LEAST_GAP { gap } else { 0.0 }, 3)
+}
+
+/// Whether gaps are plotted: they are wanted, and there is something to count them from.
+fn plots_gaps(bench: &Bench, race: &Race) -> bool {
+    bench.plot_height == PlotHeight::Gap && race.best.is_some()
+}
 
 /// Draws the view and answers the pointer.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
@@ -58,7 +68,7 @@ fn begun_at(lane: &Lane) -> Option<&Record> {
 
 /// Height of a record: its gap, or its energy; what is at the lowest lies on the floor.
 fn height(bench: &Bench, race: &Race, frame: &Frame, record: &Record) -> Option<f32> {
-    if bench.plot_height == PlotHeight::Values {
+    if !plots_gaps(bench, race) {
         return frame.y(Some(record.energy).filter(|e| e.is_finite())?);
     }
     let gap = race.gap(record)?;
@@ -79,7 +89,7 @@ fn frame(bench: &Bench, race: &Race, area: Rect) -> Frame {
             .map(|r| f64::from(r.iteration))
             .fold(10.0, f64::max)
     };
-    let gaps = bench.plot_height == PlotHeight::Gap;
+    let gaps = plots_gaps(bench, race);
     let values = records().filter_map(|r| match gaps {
         true => race.gap(r).filter(|gap| *gap > LEAST_GAP),
         false => Some(r.energy).filter(|e| e.is_finite()),
@@ -97,11 +107,13 @@ fn frame(bench: &Bench, race: &Race, area: Rect) -> Frame {
 
 fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     let end = style::heading(ui.painter(), bench, rect, rect.right(), "Convergence", "");
-    let settled = bench.race.as_ref().is_some_and(|race| race.settled);
-    let vertical = match (bench.plot_height, settled) {
-        (PlotHeight::Values, _) => energy_caption(&bench.energy, false),
-        (PlotHeight::Gap, true) => "E − E*",
-        (PlotHeight::Gap, false) => "E − lowest so far",
+    let race = bench.race.as_ref();
+    let (begun, settled) = race.map_or((false, false), |race| (race.best.is_some(), race.settled));
+    let vertical = match (bench.plot_height, begun, settled) {
+        (PlotHeight::Values, ..) => energy_caption(&bench.energy, false),
+        (PlotHeight::Gap, false, _) => "energy, until a map has no inversions",
+        (PlotHeight::Gap, true, true) => "E − E*",
+        (PlotHeight::Gap, true, false) => "E − lowest so far",
     };
     let hint = "What the height is: how far the energy is above E*, the lowest that any of them has reached, or the energy itself (E)";
     let (right, flipped) = plot::toggle(
@@ -204,15 +216,13 @@ fn cursor(ui: &egui::Ui, rect: Rect, frame: &Frame, bench: &Bench, race: &Race) 
     if let Some(p) = response.hover_pos() {
         let x = value(p);
         let words = if frame.seconds {
-            format!("{} s", number(x, 3))
+            duration(x)
         } else {
             format!("iteration {}", x.round())
         };
         let lines = race.lanes.iter().filter_map(|lane| {
             let record = at(lane, frame.seconds, x)?;
-            let gap = race
-                .gap(record)
-                .map_or("–".into(), |gap| number(gap.max(0.0), 2));
+            let gap = race.gap(record).map_or("–".into(), gap_words);
             let name = method_name(&lane.run.method);
             Some(format!(
                 "\n{name}: {}, {gap} above",

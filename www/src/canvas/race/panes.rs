@@ -8,7 +8,7 @@ use crate::canvas::bench::Bench;
 use crate::canvas::{gpu, legend, map, style};
 use crate::distortion::{corners_of, triangle_at};
 use crate::layout;
-use crate::scale::{number, whole};
+use crate::scale::{duration, number, whole};
 use crate::words::method_name;
 
 /// Draws the view and answers the pointer; returns the triangle under it.
@@ -178,9 +178,9 @@ fn heading(painter: &egui::Painter, cell: Rect, bench: &Bench, lane: &Lane) {
     let energy = format!("energy {}", number(record.energy, 6));
     let time = if bench.race.as_ref().is_some_and(|race| race.seconds) {
         format!(
-            "iteration {}, {} s",
+            "iteration {}, {}",
             record.iteration,
-            number(record.seconds, 3)
+            duration(record.seconds)
         )
     } else {
         format!("iteration {}", record.iteration)

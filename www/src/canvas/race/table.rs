@@ -2,11 +2,12 @@
 
 use eframe::egui::{self, Align2, Rect, pos2, vec2};
 
+use super::curves::gap_words;
 use super::key;
 use crate::canvas::bench::Bench;
 use crate::canvas::inspector::Column;
 use crate::canvas::style;
-use crate::scale::number;
+use crate::scale::{duration, number};
 use crate::words::{citation, handover, method_name};
 
 /// Draws the view.
@@ -26,22 +27,22 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 fn lanes(column: &mut Column, bench: &Bench) {
     let Some(race) = &bench.race else { return };
     let clock = if race.seconds {
-        format!("after {} s", number(race.at, 3))
+        format!("after {}", duration(race.at))
     } else {
         format!("iteration {}", race.at)
     };
     column.section("Side by side", &clock);
-    let lowest = |value: fn(&crate::history::Record) -> f64| {
-        let records = race.lanes.iter().filter_map(|lane| lane.record());
-        records.map(value).min_by(f64::total_cmp)
+    // the one ahead, where it is by more than rounding
+    let records = race.lanes.iter().filter_map(|lane| lane.record());
+    let mut energies: Vec<f64> = records
+        .filter(|r| r.inverted == 0)
+        .map(|r| r.energy)
+        .collect();
+    energies.sort_by(f64::total_cmp);
+    let leader = match energies[..] {
+        [first, second, ..] if second - first > 1e-9 * first.abs() => Some(first),
+        _ => None,
     };
-    let leader = lowest(|r| {
-        if r.inverted == 0 {
-            r.energy
-        } else {
-            f64::INFINITY
-        }
-    });
     for lane in &race.lanes {
         let ink = lane.ink(bench.theme.dark);
         let (left, right) = (column.left, column.right);
@@ -70,7 +71,7 @@ fn lanes(column: &mut Column, bench: &Bench) {
             column.y += 4.0;
             continue;
         };
-        let ahead = leader.is_some_and(|e| e == record.energy) && race.lanes.len() > 1;
+        let ahead = leader == Some(record.energy) && record.inverted == 0;
         let hint =
             "Surface scaled to unit area; an isometry has 1 (symmetric Dirichlet) or 0 (ARAP).";
         let energy = number(record.energy, 7);
@@ -83,16 +84,14 @@ fn lanes(column: &mut Column, bench: &Bench) {
             &energy,
             hint,
         );
-        let gap = race
-            .gap(record)
-            .map_or("–".into(), |gap| number(gap.max(0.0), 3));
+        let gap = race.gap(record).map_or("–".into(), gap_words);
         column.pair(
             "E − E*",
             &gap,
             "How far above the lowest energy that any of them has reached.",
         );
-        let spent = format!("{} · {} s", record.iteration, number(record.seconds, 3));
-        column.pair("iteration, time", &spent, "Seconds of solving as the solver itself counts them: setup, drawing and the other solvers apart.");
+        let spent = format!("{} · {}", record.iteration, duration(record.seconds));
+        column.pair("iteration · time", &spent, "Seconds of solving as the solver itself counts them: setup, drawing and the other solvers apart.");
         column.pair(
             "inverted",
             &record.inverted.to_string(),
