@@ -37,8 +37,8 @@ pub fn mark(
     style::label(
         painter,
         bench,
-        at + vec2(9.0, -11.0 * bench.text),
-        Align2::LEFT_CENTER,
+        at - vec2(0.0, 24.0 * bench.text),
+        Align2::CENTER_CENTER,
         &words,
         true,
     );
