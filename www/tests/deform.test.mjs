@@ -305,6 +305,17 @@ describe('solving', () => {
     assert.ok(Math.abs((await width()) - pressed) < 0.3 * pressed);
   });
 
+  onPage('a hybrid with Newton’s method, from an address: it switches when nothing is inverted, and rests', { query: `${SMALL}&preset=random&method=wrapd%2Bnewton` }, async (page) => {
+    assert.equal(await page.inputValue('#deform-method'), 'wrapd+newton');
+    await page.click('#unfold');
+    await rest(page);
+    const records = await page.evaluate(() => globalThis.foldfreePage.session.records);
+    const { switchedAt, iteration, inverted, status: ended } = records.at(-1);
+    assert.deepEqual([inverted, ended], [0, 'converged']);
+    assert.ok(switchedAt >= 1 && switchedAt < iteration, `${switchedAt} of ${iteration}`);
+    assert.ok(records[switchedAt - 1].inverted > 0 && records.slice(switchedAt).every((record) => record.inverted === 0));
+  });
+
   onPage('solver, material and moduli change on the way; a bad number is told off in its field', { query: `${SMALL}&preset=twist` }, async (page) => {
     await page.click('#step-ten');
     await page.waitForFunction(() => globalThis.foldfreePage.shown >= 10);
