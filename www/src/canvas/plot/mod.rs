@@ -1,6 +1,7 @@
 //! Energy, worst distortion and inverted elements against iteration or time, on a log scale; the worst
 //! stretch of a solid on a log scale of its own, at the right.
 
+mod inversions;
 mod names;
 pub(super) mod switch;
 
@@ -8,7 +9,7 @@ use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2
 
 use super::bench::{Bench, Event, PlotHeight};
 use super::style;
-use crate::colour::{CurveStyle, VERMILION, curve_style};
+use crate::colour::{CurveStyle, curve_style};
 use crate::history::Record;
 use crate::scale::{LogAxis, linear_ticks, number, power_of_ten, time_tick};
 use crate::words::energy_caption;
@@ -152,7 +153,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         if let Some(p) = worst.iter().rev().find_map(|piece| piece.last()) {
             ends.push((p.y, bench.nouns().worst, quiet));
         }
-        inverted(&painter, &frame, records);
+        inversions::steps(&painter, &frame, records);
         if let Some(last) = records.last() {
             let y = frame.y(f64::from(last.inverted)).unwrap_or(area.bottom());
             ends.push((y, "inverted", style::colour(theme.warn)));
@@ -406,37 +407,6 @@ pub(super) fn draw(
             painter.extend(Shape::dashed_line_with_offset(
                 piece, stroke, &dashes, &gaps, 0.0,
             ));
-        }
-    }
-}
-
-/// The count of inverted elements as a stepped line with a dot at every iterate while they are few.
-fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
-    let ink = style::colour(VERMILION);
-    let place = |r: &Record| {
-        pos2(
-            frame.x(r),
-            frame
-                .y(f64::from(r.inverted))
-                .unwrap_or(frame.area.bottom()),
-        )
-    };
-    let mut line: Vec<Pos2> = Vec::new();
-    for record in records {
-        let p = place(record);
-        if let Some(last) = line.last().copied() {
-            if last.y == p.y && line.len() > 1 && line[line.len() - 2].y == p.y {
-                line.pop();
-            } else if last.y != p.y {
-                line.push(pos2(p.x, last.y));
-            }
-        }
-        line.push(p);
-    }
-    painter.add(Shape::line(line, Stroke::new(1.2, ink)));
-    if frame.area.width() / (records.len().max(1) as f32) > 7.0 {
-        for record in records {
-            painter.circle_filled(place(record), 2.4, ink);
         }
     }
 }
