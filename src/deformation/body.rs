@@ -79,7 +79,7 @@ impl Body<'_> {
         let (method, tolerance) = (self.method, self.tolerance);
         let max_iterations = self.max_iterations;
         let settings = self.wrapd_options();
-        self.build(energy.constants().rest_stiffness, |problem| {
+        self.build(energy.constants().rest_stiffness, &|problem| {
             Ok(match method {
                 Both | RAdmm => Box::new(Wrapd::new::<S, RotationAware, E>(
                     problem, energy, settings,
@@ -114,7 +114,7 @@ impl Body<'_> {
             max_iterations: self.max_iterations,
             ..Default::default()
         };
-        self.build(energy.constants().rest_stiffness, |problem| {
+        self.build(energy.constants().rest_stiffness, &|problem| {
             Ok(match method {
                 Alone => Box::new(Newton::projected::<Solid, E>(problem, energy, newton)?),
                 _ => Box::new(Hybrid::projected::<Solid, E>(
@@ -140,7 +140,7 @@ impl Body<'_> {
     fn build(
         mut self,
         rest_stiffness: f64,
-        new: impl Fn(Problem) -> Result<Box<dyn Deformer>, BuildError>,
+        new: &dyn Fn(Problem) -> Result<Box<dyn Deformer>, BuildError>,
     ) -> Result<Deformation, Error> {
         let spring_stiffness = self.spring_stiffness(rest_stiffness);
         let fits = |k: f64| k > 0.0 && k.is_finite();

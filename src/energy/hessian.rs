@@ -27,9 +27,30 @@ pub struct Eigensystem<S: Space> {
     modes: [S::Gradient<f64>; MOST],
 }
 
+/// The derivatives of an energy in the singular values, behind a pointer: what follows is compiled once a
+/// dimension, not once an energy.
+trait Derivatives<S: Space> {
+    fn first(&self, sigma: S::Sigma<f64>) -> S::Sigma<f64>;
+    fn second(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3];
+}
+
+impl<S: Space, E: Energy<S>> Derivatives<S> for E {
+    fn first(&self, sigma: S::Sigma<f64>) -> S::Sigma<f64> {
+        self.gradient(sigma)
+    }
+    fn second(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3] {
+        self.hessian(sigma)
+    }
+}
+
 impl<S: Space> Eigensystem<S> {
     /// At F (column by column).
     pub fn new<E: Energy<S>>(energy: E, f: S::Gradient<f64>) -> Self {
+        Self::of(&energy, f)
+    }
+
+    #[inline(never)]
+    fn of(energy: &dyn Derivatives<S>, f: S::Gradient<f64>) -> Self {
         const { assert!(S::DIM == S::STRETCHES) };
         let k = S::STRETCHES;
         let (sigma, frame) = S::svd(f);
@@ -37,7 +58,7 @@ impl<S: Space> Eigensystem<S> {
             values: [0.0; MOST],
             modes: [S::Gradient::from_fn(|_| 0.0); MOST],
         };
-        let (values, vectors) = eigen(energy.hessian(sigma), k);
+        let (values, vectors) = eigen(energy.second(sigma), k);
         for m in 0..k {
             this.values[m] = values[m];
             this.modes[m] = S::from_svd(S::Sigma::from_fn(|i| vectors[m][i]), frame);
@@ -58,9 +79,9 @@ impl<S: Space> Eigensystem<S> {
                         both * core::f64::consts::FRAC_1_SQRT_2
                     })
                 };
-                this.values[m] = quotient::<S, E>(energy, sigma, (i, j), 1.0);
+                this.values[m] = quotient::<S>(energy, sigma, (i, j), 1.0);
                 this.modes[m] = mode(-1.0);
-                this.values[m + 1] = quotient::<S, E>(energy, sigma, (i, j), -1.0);
+                this.values[m + 1] = quotient::<S>(energy, sigma, (i, j), -1.0);
                 this.modes[m + 1] = mode(1.0);
                 m += 2;
             }
@@ -146,15 +167,15 @@ fn factors(m: &[f64], k: usize) -> ([f64; 3], [f64; 3]) {
 const CLOSE: f64 = 1e-5;
 
 /// (ψᵢ + s ψⱼ)/(σᵢ + s σⱼ) for s = ±1.
-fn quotient<S: Space, E: Energy<S>>(
-    energy: E,
+fn quotient<S: Space>(
+    energy: &dyn Derivatives<S>,
     sigma: S::Sigma<f64>,
     (i, j): (usize, usize),
     s: f64,
 ) -> f64 {
     let (a, b) = (sigma.at(i), sigma.at(j));
     let numerator = |sigma| {
-        let gradient = energy.gradient(sigma);
+        let gradient = energy.first(sigma);
         gradient.at(i) + s * gradient.at(j)
     };
     let close = (CLOSE * (a.abs() + b.abs())).max(1e-12);
@@ -170,7 +191,7 @@ fn quotient<S: Space, E: Energy<S>>(
         _ if c == j => -s * middle,
         _ => sigma.at(c),
     });
-    let gradient = energy.gradient(between);
+    let gradient = energy.first(between);
     let size = gradient.at(i).abs() + gradient.at(j).abs();
     let left = gradient.at(i) + s * gradient.at(j);
     if left.abs() > 1e-8 * size {
@@ -178,6 +199,6 @@ fn quotient<S: Space, E: Energy<S>>(
         let away = if difference < 0.0 { -close } else { close };
         return numerator(sigma) / away;
     }
-    let h = energy.hessian(between);
+    let h = energy.second(between);
     0.5 * (h[i][i] + h[j][j]) + s * h[i][j]
 }

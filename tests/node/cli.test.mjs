@@ -49,6 +49,25 @@ describe('the command line in WebAssembly', () => {
     assert.equal(json('cap.json').iterations.length, 3);
   });
 
+  it('has the second-order methods, and reports when a hybrid switched', () => {
+    foldfree('generate', 'bumpy-cap', '--triangles', '500', '--out', file('cap.obj'));
+    for (const method of ['cm', 'slim', 'wrapd+cm']) {
+      const { status, stderr } = foldfree('parameterize', file('cap.obj'), '--method', method, '--report', file('second.json'));
+      assert.equal(status, 0, stderr);
+      const { options, iterations } = json('second.json');
+      assert.equal(options.method, method);
+      const switched = iterations.map((iteration) => iteration.switched_at).filter((at) => at !== undefined);
+      assert.equal(switched.length > 0, method === 'wrapd+cm', method);
+      assert.equal(switched.length, switched.length && iterations.length - switched[0], 'from that iteration on');
+      assert.ok(switched.every((at) => at === switched[0] && at >= 1));
+    }
+    foldfree('generate', 'bar', '--tetrahedra', '300', '--out', file('bar.mesh'));
+    writeFileSync(file('pin.txt'), '0\n1\n');
+    const { status, stderr } = foldfree('deform', '--init', file('bar.mesh'), '--pins', file('pin.txt'), '--method', 'newton', '--report', file('newton.json'));
+    assert.equal(status, 0, stderr);
+    assert.equal(json('newton.json').options.method, 'newton');
+  });
+
   it('ends with 1 and one line on an error', () => {
     writeFileSync(file('bad.obj'), 'v 0 0 0\nv 1 0 0\nf 1 2 5\n');
     for (const args of [

@@ -34,6 +34,40 @@ describe('core', () => {
     for (const shape of core.shapes) assert.ok(shape.name && shape.title && shape.description);
   });
 
+  it('has every method of parameterization, to the same minimum where the energy is the same', () => {
+    using_(core.generate('bumpy-cap', 600), (mesh) => {
+      const ends = {};
+      for (const method of ['wrapd', 'wrapd+cm', 'cm', 'slim', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte']) {
+        using_(core.parameterize(mesh, { method, start: 'tutte', tolerance: 1e-8 }), (solver) => {
+          let last = solver.start;
+          for (let k = 0; k < 400 && last.status === 'running'; k++) last = solver.step();
+          ends[method] = last;
+          assert.ok(last.iteration >= 1 && Number.isFinite(last.energy), `${method}: ${last.energy}`);
+          // once it has switched every report says when
+          assert.equal(last.switchedAt !== undefined, method === 'wrapd+cm', method);
+        });
+      }
+      const { iteration, switchedAt, energy: least } = ends['wrapd+cm'];
+      assert.ok(switchedAt >= 1 && switchedAt < iteration, `${switchedAt} of ${iteration}`);
+      for (const method of ['wrapd', 'cm', 'slim']) {
+        assert.ok(Math.abs(ends[method].energy / least - 1) < 1e-5, `${method}: ${ends[method].energy}, ${least}`);
+      }
+      assert.ok(iteration < ends.wrapd.iteration, 'the second order is worth its while');
+    });
+  });
+
+  it('says which methods need a start without inversions', () => {
+    using_(core.generate('bumpy-cap', 300), (mesh) => {
+      for (const method of ['cm', 'slim']) {
+        const error = thrown('not-injective-start', () => core.parameterize(mesh, { method, start: 'random' }));
+        assert.ok(error.details.inverted > 0 && /inverted/.test(error.message), error.message);
+      }
+      core.parameterize(mesh, { method: 'slim', start: 'random', energy: 'arap' }).free();
+      core.parameterize(mesh, { method: 'wrapd+cm', start: 'random' }).free();
+      thrown('invalid-option', () => core.parameterize(mesh, { method: 'cm', energy: 'arap' }));
+    });
+  });
+
   it('flattens a bumpy cap without a fold, and certifies it', () => {
     using_(core.generate('bumpy-cap', 2000), (mesh) => {
       assert.ok(mesh.triangleCount > 1000 && mesh.triangleCount < 4000);

@@ -22,11 +22,12 @@ describe('the packed package', () => {
   });
 
   // Flattening alone took 570 KB (230 KB); solids with six materials, their generators and the readers of seven
-  // formats are the rest. Two registers side by side, not one, are 60 KB (20 KB), and a fifth of the time.
+  // formats make it 950 KB (360 KB). Two registers side by side, not one, are 60 KB (20 KB) of that, and a fifth of the
+  // time. Second-order methods, which share all that does not depend on the energy, are the rest: 85 KB (35 KB).
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_000_000, `${wasm.length} bytes`);
-    assert.ok(gzipSync(wasm, { level: 9 }).length <= 375_000);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_100_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 420_000);
   });
 
   it('pleases publint', async () => {

@@ -111,7 +111,7 @@ describe('deform', () => {
     const defaults = core.defaultDeformationOptions();
     assert.equal(defaults.energy, 'neo-hookean');
     for (const energy of ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff', 'arap', 'symmetric-dirichlet', 'dirichlet']) {
-      for (const method of ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs']) {
+      for (const method of ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs', 'newton', 'wrapd+newton']) {
         const solver = core.deform(bar, { energy, method, pins: left, targets: turned(bar, right, 0.3), maxIterations: 20 });
         let step;
         for (let k = 0; k < 20; k++) step = solver.step();

@@ -1,8 +1,9 @@
 // The state of the page in the address, so that a link opens the same bench.
+import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
 import { MATERIALS } from './materials.js';
 
 /** The modes, the first of which the page opens on. */
-export const MODES = ['flatten', 'deform'];
+export const MODES = ['flatten', 'deform', 'compare'];
 
 /** What each mode opens on. */
 export const DEFAULTS = Object.freeze({
@@ -13,33 +14,54 @@ export const DEFAULTS = Object.freeze({
     solid: 'bar', tetrahedra: 3000, preset: 'random', method: 'wrapd', material: 'neo-hookean', young: 1e6, poisson: 0.3,
     field: 'stretch', cut: 'z', at: 0.5,
   }),
+  compare: Object.freeze({
+    sample: 'bumpy-cap', triangles: 4000, start: 'tutte', energy: 'symmetric-dirichlet', clock: 'iterations',
+    methods: 'wrapd,wrapd+cm,cm,slim',
+  }),
 });
 
 const CHOICES = {
   flatten: {
     start: ['automatic', 'harmonic', 'tutte', 'lscm', 'random', 'collapsed'],
-    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
+    method: ['wrapd', 'wrapd+cm', 'cm', 'slim', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
     energy: ['symmetric-dirichlet', 'arap'],
   },
   deform: {
     preset: ['held', 'squash', 'twist', 'random', 'collapse'],
-    method: ['wrapd', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
+    method: ['wrapd', 'wrapd+newton', 'newton', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
     material: Object.keys(MATERIALS),
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
   },
+  compare: {
+    start: ['automatic', 'harmonic', 'tutte', 'lscm', 'random', 'collapsed'],
+    energy: ['symmetric-dirichlet', 'arap'],
+    clock: ['iterations', 'seconds'],
+  },
 };
 
-const NAMES = { flatten: ['sample'], deform: ['solid'] };
+const NAMES = { flatten: ['sample'], deform: ['solid'], compare: ['sample'] };
 const RANGES = {
   flatten: { triangles: [2, 1e6, true] },
+  compare: { triangles: [2, 1e6, true] },
   deform: { tetrahedra: [2, 1e6, true], young: [1e-6, 1e15, false], poisson: [-0.99, 0.499, false], at: [0, 1, false] },
 };
 
+/** How the address names the methods that are compared; that alone asks for the mode. */
+const COMPARED = 'compare';
+
+/** The methods of a list that can be compared by an energy, in the order of their buttons; nothing if they are too few. */
+function compared(list, energy) {
+  const asked = list.replaceAll(' ', '+').split(',');
+  const known = COMPARABLE[energy].filter((method) => asked.includes(method)).slice(0, MOST);
+  return known.length >= FEWEST ? known.join(',') : undefined;
+}
+
 /** The mode an address asks for. */
 export function modeOf(search = location.search) {
-  const asked = new URLSearchParams(search).get('mode');
-  return MODES.includes(asked) ? asked : MODES[0];
+  const asked = new URLSearchParams(search);
+  if (MODES.includes(asked.get('mode'))) return asked.get('mode');
+  return asked.has(COMPARED) ? 'compare' : MODES[0];
 }
 
 /**
@@ -50,7 +72,8 @@ export function readAddress(mode = modeOf(), search = location.search) {
   const asked = new URLSearchParams(modeOf(search) === mode ? search : '');
   const state = { ...DEFAULTS[mode] };
   for (const [key, values] of Object.entries(CHOICES[mode])) {
-    if (values.includes(asked.get(key))) state[key] = asked.get(key);
+    const value = asked.get(key)?.replaceAll(' ', '+'); // a plus sign that was typed into the address is read as a space
+    if (values.includes(value)) state[key] = value;
   }
   for (const key of NAMES[mode]) {
     if (/^[a-z0-9-]{1,40}$/.test(asked.get(key) ?? '')) state[key] = asked.get(key);
@@ -58,6 +81,12 @@ export function readAddress(mode = modeOf(), search = location.search) {
   for (const [key, [low, high, whole]] of Object.entries(RANGES[mode])) {
     const value = Number(asked.get(key) || NaN);
     if (value >= low && value <= high) state[key] = whole ? Math.round(value) : value;
+  }
+  if (mode === 'compare') {
+    const { energy, methods } = state;
+    // What nobody asked for has to be comparable by the energy, too.
+    const fallback = compared(methods, energy) ?? COMPARABLE[energy].slice(0, MOST).join(',');
+    state.methods = compared(asked.get(COMPARED) ?? '', energy) ?? fallback;
   }
   const steps = Number(asked.get(STEPS[mode]));
   if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);
@@ -68,7 +97,7 @@ export function readAddress(mode = modeOf(), search = location.search) {
 export const MOST_STEPS = 5000;
 
 /** How the address says how many steps to make. */
-const STEPS = { flatten: 'at', deform: 'steps' };
+const STEPS = { flatten: 'at', deform: 'steps', compare: 'at' };
 
 /** Writes the state of `mode` into the address, defaults left out, and everything of other modes. */
 export function writeAddress(mode, state) {
@@ -76,13 +105,15 @@ export function writeAddress(mode, state) {
   for (const other of MODES) {
     for (const key of [...Object.keys(DEFAULTS[other]), STEPS[other]]) asked.delete(key);
   }
-  if (mode === MODES[0]) asked.delete('mode');
+  asked.delete(COMPARED);
+  if (mode === MODES[0] || mode === 'compare') asked.delete('mode');
   else asked.set('mode', mode);
   for (const [key, value] of Object.entries(DEFAULTS[mode])) {
-    if (state[key] !== undefined && state[key] !== value) asked.set(key, state[key]);
+    if (key !== 'methods' && state[key] !== undefined && state[key] !== value) asked.set(key, state[key]);
   }
   if (state.steps) asked.set(STEPS[mode], state.steps);
-  const query = asked.toString();
+  if (mode === 'compare') asked.set(COMPARED, state.methods);
+  const query = asked.toString().replaceAll('%2C', ',');
   history.replaceState(null, '', query ? `?${query}` : location.pathname);
 }
 

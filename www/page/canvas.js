@@ -102,6 +102,25 @@ class BenchBoard {
     this.handle.pushNumbers(numbers(step), phases(step));
   }
 
+  /** Solvers are compared, by their methods. */
+  race(methods, energy) { this.handle.beginRace(methods, energy); }
+
+  /** An iterate of one of them. */
+  pushLane(lane, step) {
+    this.handle.pushLane(lane, numbers(step), phases(step), single(step.positions));
+  }
+
+  /** How one of them ended, or what went wrong. */
+  endLane(lane, words, failed) { this.handle.endLane(lane, words, failed); }
+  /** A time of their clock, and the iterate each had then. */
+  moment(at, shown) { this.handle.showMoment(at, Uint32Array.from(shown)); }
+  /** The lowest energy, from which the gaps count. */
+  best(best) { this.handle.setBest(best?.energy ?? NaN, best?.settled ?? false); }
+  /** What their clock counts: `iterations` or `seconds`. */
+  clock(name) { this.handle.setClock(name === 'seconds'); }
+  /** The map that a phone shows. */
+  pane(index) { this.handle.setPane(index); }
+
   /** Pairs of boundary edges that meet in the newest map. */
   crossings(list) {
     this.handle.setCrossings(Uint32Array.from(list.flatMap(({ edges }) => edges.flat())));
@@ -134,7 +153,7 @@ const single = (positions) => (positions instanceof Float32Array ? positions : F
 
 const numbers = (step) => Float64Array.of(
   step.iteration, step.energy, step.inverted, step.gradientNorm, step.smallestSigma, step.largestSigma,
-  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds,
+  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds, step.switchedAt ?? -1,
 );
 
 const phases = (step) => Float64Array.from(

@@ -228,6 +228,7 @@ export class DeformSession {
     // Seconds of solving: the solver's own clock also runs while it waits for the next step.
     step.seconds = (this.newest?.seconds ?? 0) + milliseconds / 1000;
     step.iteration += this.#before.iterations;
+    if (step.switchedAt !== undefined) step.switchedAt += this.#before.iterations;
     // Targets may have come after the solver had ended and before this was heard of: it has to look once more.
     this.#status = step.status === 'cancelled' || this.#aimed ? 'running' : step.status;
     const numbers = numbersOf(step);

@@ -5,7 +5,8 @@ import { readMeshFile, save } from './files.js';
 import { Mode } from './mode.js';
 import { describe } from './notice.js';
 import { Session } from './session.js';
-import { METHODS, ending, number, whole } from './words.js';
+import { chosenSample, listSamples, reflectSource, titleOf } from './surface-controls.js';
+import { FOLDED_STARTS, MAJORIZES, METHODS, NEEDS_INJECTIVE, ending, number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
 const DIRECT = ['lscm', 'harmonic', 'tutte'];
@@ -67,7 +68,7 @@ export class Flatten extends Mode {
     if (!this.session?.problem) return;
     const { startKind, setupSeconds, notes } = this.session.problem;
     const pairs = [
-      ['surface', this.source.name ?? $('sample').selectedOptions[0]?.text ?? this.source.sample],
+      ['surface', titleOf(this.source)],
       ['start', startKind],
       ['setup', `${number(1000 * setupSeconds, 3)} ms`],
       ['threads', String(this.page.foldfree.threads)],
@@ -83,29 +84,20 @@ export class Flatten extends Mode {
     this.bench.facts(pairs);
   }
 
+  enter() {
+    super.enter();
+    this.reflect(); // the controls are shared with the comparison
+  }
+
   /** Brings the controls in line with what is wanted. */
   reflect() {
+    if (!this.active) return;
     const { wanted, source } = this;
     for (const id of ['start', 'method', 'energy']) $(id).value = wanted[id];
-    const sample = $('sample');
-    sample.querySelector('option[data-file]')?.remove();
-    if (source.bytes) {
-      const option = new Option(source.name, '', true, true);
-      option.dataset.file = '';
-      sample.add(option, 0);
-    } else {
-      if (![...sample.options].some((option) => option.value === source.sample)) sample.add(new Option(source.sample, source.sample));
-      sample.value = source.sample;
-      const sizes = $('triangles');
-      if (![...sizes.options].some((option) => Number(option.value) === source.triangles)) {
-        sizes.add(new Option(`${whole(source.triangles)} triangles`, String(source.triangles)));
-      }
-      sizes.value = String(source.triangles);
-    }
-    $('triangles').disabled = Boolean(source.bytes);
+    reflectSource(source);
     const direct = DIRECT.includes(wanted.method);
     $('start').disabled = direct;
-    $('energy').disabled = direct || wanted.method === 'arap';
+    $('energy').disabled = direct || wanted.method === 'arap' || MAJORIZES.includes(wanted.method);
   }
 
   /** Solves `next` instead of what is on the bench; on failure the bench stays as it is. */
@@ -157,15 +149,24 @@ export class Flatten extends Mode {
   }
 
   async change(key, value) {
-    this.wanted[key] = value;
+    const { wanted } = this;
+    wanted[key] = value;
+    if (MAJORIZES.includes(wanted.method)) wanted.energy = 'symmetric-dirichlet';
+    // Who picks such a method wants to see it run, not to be told off.
+    const impossible = NEEDS_INJECTIVE.includes(wanted.method) && wanted.energy === 'symmetric-dirichlet' && FOLDED_STARTS.includes(wanted.start);
+    if (impossible && key !== 'start') wanted.start = 'automatic';
     this.reflect();
-    if (!this.whenReady(() => this.open())) return;
-    await this.open();
+    const begin = async () => {
+      if (!(await this.open()) || !impossible || key === 'start') return;
+      this.notice('Another start', `${METHODS[wanted.method]} cannot begin with inverted triangles: it starts from the harmonic map, or from Tutte’s.`, { plain: true });
+    };
+    if (!this.whenReady(begin)) return;
+    await begin();
   }
 
   async #changeSample() {
-    const next = { sample: $('sample').value, triangles: Number($('triangles').value) };
-    if (!next.sample) return;
+    const next = chosenSample();
+    if (!next) return;
     [this.wanted.sample, this.wanted.triangles] = [next.sample, next.triangles];
     if (!this.whenReady(() => this.open(next))) return;
     await this.open(next, { busy: next.triangles > 10_000 ? 'Building the surface' : '' });
@@ -197,23 +198,13 @@ export class Flatten extends Mode {
   }
 
   connect() {
-    for (const id of ['start', 'method', 'energy']) $(id).addEventListener('change', () => this.change(id, $(id).value));
-    for (const id of ['sample', 'triangles']) $(id).addEventListener('change', () => this.#changeSample());
+    for (const id of ['start', 'method', 'energy']) $(id).addEventListener('change', () => { if (this.active) this.change(id, $(id).value); });
+    for (const id of ['sample', 'triangles']) $(id).addEventListener('change', () => { if (this.active) this.#changeSample(); });
   }
 
   /** Picks the solver a number key stands for. */
   pickMethod(index) {
     const method = [...$('method').options][index]?.value;
     if (method) this.change('method', method);
-  }
-}
-
-/** The library knows its samples best. */
-function listSamples(shapes) {
-  const options = [...$('sample').options];
-  for (const { name, title, description } of shapes) {
-    const option = options.find((o) => o.value === name) ?? new Option(title, name);
-    option.title = description;
-    if (!option.parentNode) $('sample').add(option);
   }
 }

@@ -1,7 +1,8 @@
 // The page: connects the controls, the canvas, the solver, and the modes.
 import { load } from '../pkg/index.js';
-import { MOST_STEPS, modeOf } from './address.js';
+import { MODES, MOST_STEPS, modeOf } from './address.js';
 import { startCanvas } from './canvas.js';
+import { Compare } from './compare.js';
 import { Deform } from './deform.js';
 import { acceptDrops } from './files.js';
 import { Flatten } from './flatten.js';
@@ -16,6 +17,7 @@ const $ = (id) => document.getElementById(id);
 /** What the modes share. */
 const page = { canvas: undefined, foldfree: undefined, active: undefined, busy: setBusy };
 const modes = { flatten: new Flatten(page), deform: new Deform(page) };
+modes.compare = new Compare(page, modes.flatten);
 page.active = modes[modeOf()];
 
 function setBusy(text, progress) {
@@ -34,7 +36,7 @@ function dress() {
   const { active } = page;
   const { accepts, dropHere, views, label } = active.constructor;
   document.body.dataset.mode = active.name;
-  for (const element of document.querySelectorAll('[data-for]')) element.hidden = element.dataset.for !== active.name;
+  for (const element of document.querySelectorAll('[data-for]')) element.hidden = !element.dataset.for.split(' ').includes(active.name);
   for (const button of document.querySelectorAll('[data-mode-button]')) {
     if (button.dataset.modeButton === active.name) button.setAttribute('aria-current', 'page');
     else button.removeAttribute('aria-current');
@@ -130,7 +132,7 @@ function connect() {
     if (files.length) page.active.openFiles(files);
   });
   acceptDrops($('drop'), (files) => page.active.openFiles(files));
-  for (const id of ['export-obj', 'export-solid', 'export-trace']) $(id).addEventListener('click', () => exporting(id));
+  for (const id of ['export-obj', 'export-solid', 'export-csv', 'export-trace']) $(id).addEventListener('click', () => exporting(id));
   $('export-menu').addEventListener('beforetoggle', () => {
     const at = $('export').getBoundingClientRect();
     const style = $('export-menu').style;
@@ -152,7 +154,8 @@ function connect() {
     Home: show(() => 0), End: show((mode) => mode.records.length - 1),
     r: act('reset'), f: () => page.canvas?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
     p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
-    m: () => switchTo(page.active === modes.flatten ? 'deform' : 'flatten'),
+    m: () => switchTo(MODES[(MODES.indexOf(page.active.name) + 1) % MODES.length]),
+    s: () => page.active.setClock?.(page.active.wanted.clock === 'seconds' ? 'iterations' : 'seconds'),
     h: hand('next'), j: hand('nudge', -1, 0), l: hand('nudge', 1, 0), i: hand('nudge', 0, 1), k: hand('nudge', 0, -1),
     u: hand('twist', -1), y: hand('twist', 1), b: hand('nextPlace'), n: hand('pinPlace'), Delete: hand('release', false), Backspace: hand('release', false),
     ...Object.fromEntries(digits),

@@ -97,6 +97,10 @@ export class Mode {
   readout(record) { return record; }
   /** Hands a step to the canvas. */
   push(step) { this.bench.push(step); }
+  /** Lets the canvas draw an iterate. */
+  drawShown(index) { this.bench?.show(index); }
+  /** Makes a step; resolves with nothing when there is none to make. */
+  makeStep() { return this.session.step(); }
   /** Before a step is made: moves what moves by itself. */
   async beforeStep() {}
   /** The solver has nothing more to do. */
@@ -110,7 +114,7 @@ export class Mode {
     if (!this.records.length) return;
     if (!soon) this.#follows = index >= this.records.length - 1;
     this.shown = Math.max(0, Math.min(index, this.records.length - 1));
-    this.bench?.show(this.shown);
+    this.drawShown(this.shown);
     if (!this.active) return;
     drawStatus(this);
     if (!quietly) speak(spoken(this.readout(this.records[this.shown])), { now: !this.playing });
@@ -183,7 +187,7 @@ export class Mode {
   async #makeStep() {
     try {
       await this.beforeStep();
-      const step = await this.session.step();
+      const step = await this.makeStep();
       if (!step) return false;
       this.took(step);
       return !this.session.finished || this.restless;

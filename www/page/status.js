@@ -20,10 +20,10 @@ export function drawStatus(mode) {
   const rate = mode.playing ? mode.rate : undefined;
   const time = rate ? `${Math.round(rate)} steps a second` : `${number(stepMilliseconds(records, shown), 2)} ms`;
   const parts = [
-    part('quiet', `iteration ${record.iteration}${newest > shown ? ` of ${records[newest].iteration}` : ''}`),
-    part('', `energy ${number(record.energy)}`),
+    part('quiet', record.where ?? `iteration ${record.iteration}${newest > shown ? ` of ${records[newest].iteration}` : ''}`),
+    part('', ...(record.lead ? [record.lead, part('lead', ' is lowest,'), ' '] : []), `energy ${number(record.energy)}`),
     part(`inverted ${record.inverted > 0 ? 'bad' : 'good'}`, ...hatch, `${whole(record.inverted)} inverted`),
-    ...(record.iteration > 0 ? [part('quiet time', time)] : []),
+    ...(record.iteration > 0 && !record.where ? [part('quiet time', time)] : []),
   ];
   $('status').replaceChildren(...parts.flatMap((element, i) => (i ? [part('dot', ' · '), element] : [element])));
   const handle = $('history');

@@ -32,6 +32,8 @@ export function flipTheme() {
 
 const narrow = matchMedia('(max-width: 719.98px)');
 let tab = 'map'; // the view a phone shows
+let pane = 0; // of several maps the one a phone shows
+let choosePane = () => {};
 
 /** Lays out for the size of the window. */
 function arrange() {
@@ -39,20 +41,26 @@ function arrange() {
   const wide = innerWidth >= 1000;
   const box = $('invite').style;
   // Over the middle of the map, a little above its middle; below the whole solid, which has to be seen.
-  const deforming = document.body.dataset.mode === 'deform';
+  const { mode } = document.body.dataset;
+  const deforming = mode === 'deform';
+  const comparing = mode === 'compare';
   const column = wide && !narrow.matches && !projecting() ? 292 : 0;
-  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${deforming ? 0.25 : 0.75})`);
+  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${comparing ? 0.5 : deforming ? 0.25 : 0.75})`);
   // The plot below the views has at most 250 points (layout.rs).
   const low = narrow.matches ? 'calc(100% - 86px)' : 'calc(100% - clamp(130px, 30%, 250px) - 74px)';
-  box.setProperty('--invite-y', deforming ? low : narrow.matches ? '50%' : '34%');
+  // Where solvers are compared: in the middle of the plot, which is empty yet.
+  if (comparing) box.setProperty('--invite-y', 'calc(100% - clamp(150px, 46%, 340px) / 2)');
+  else box.setProperty('--invite-y', deforming ? low : narrow.matches ? '50%' : '34%');
 }
 
 /** Shows one view, on a phone. */
-function choose(view) {
+function choose(view, index = 0) {
   tab = view;
+  pane = index;
+  choosePane(index);
   document.body.dataset.tab = view;
   for (const button of document.querySelectorAll('[role="tab"]')) {
-    const on = button.dataset.view === view;
+    const on = button.dataset.view === view && Number(button.dataset.pane ?? index) === index;
     button.setAttribute('aria-selected', String(on));
     button.tabIndex = on ? 0 : -1;
   }
@@ -61,8 +69,24 @@ function choose(view) {
 
 /** The names of the views on a phone's tabs, and the one that is shown first. */
 export function nameViews(names, first) {
-  for (const button of document.querySelectorAll('[role="tab"]')) button.textContent = names[button.dataset.view];
+  choosePane = () => {};
+  for (const button of $('view-tabs').children) button.textContent = names[button.dataset.view];
   choose(first);
+}
+
+/** Tabs for several maps, by their names, and for the numbers; `show(index)` is told which is chosen. */
+export function showPanes(names, show) {
+  const make = (text, data) => {
+    const button = Object.assign(document.createElement('button'), { type: 'button', textContent: text });
+    button.setAttribute('role', 'tab');
+    button.setAttribute('aria-controls', 'stage');
+    Object.assign(button.dataset, data);
+    return button;
+  };
+  const maps = names.map((name, index) => make(name, { view: 'map', pane: String(index) }));
+  $('pane-tabs').replaceChildren(...maps, make('Numbers', { view: 'inspector' }));
+  choosePane = show;
+  choose(tab === 'inspector' ? tab : 'map', pane < names.length ? pane : 0);
 }
 
 /** Views only, text at double size; or back. */
@@ -86,15 +110,21 @@ export const projecting = () => document.body.classList.contains('projecting');
 export function connectViews() {
   $('theme').addEventListener('click', flipTheme);
   $('projector').addEventListener('click', project);
-  const tabs = [...document.querySelectorAll('[role="tab"]')];
-  for (const button of tabs) button.addEventListener('click', () => choose(button.dataset.view));
-  tabs[0].parentElement.addEventListener('keydown', (event) => {
-    const turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!turn) return;
-    const next = tabs[(tabs.findIndex((button) => button.dataset.view === tab) + turn + tabs.length) % tabs.length];
-    choose(next.dataset.view);
-    next.focus();
-  });
+  const pick = (button) => choose(button.dataset.view, Number(button.dataset.pane ?? 0));
+  for (const list of document.querySelectorAll('[role="tablist"]')) {
+    list.addEventListener('click', (event) => {
+      const button = event.target.closest('[role="tab"]');
+      if (button) pick(button);
+    });
+    list.addEventListener('keydown', (event) => {
+      const turn = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!turn) return;
+      const tabs = [...list.children];
+      const next = tabs[(tabs.findIndex((button) => button.getAttribute('aria-selected') === 'true') + turn + tabs.length) % tabs.length];
+      pick(next);
+      next.focus();
+    });
+  }
   narrow.addEventListener('change', arrange);
   addEventListener('resize', arrange);
 }

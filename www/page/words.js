@@ -10,6 +10,9 @@ export function number(value, digits = 4) {
   return value.toFixed(Math.max(digits - 1 - exponent, 0));
 }
 
+/** So many seconds, in milliseconds below one. */
+export const duration = (seconds) => (seconds < 1 ? `${number(1000 * seconds, 3)} ms` : `${number(seconds, 3)} s`);
+
 /** A whole number in groups of three. */
 export function whole(value) {
   const digits = String(Math.round(value));
@@ -18,14 +21,24 @@ export function whole(value) {
 
 /** "iteration 12, energy 1.043, 0 inverted": what a screen reader hears. */
 export function spoken(record) {
-  return `iteration ${record.iteration}, energy ${number(record.energy)}, ${record.inverted} inverted`;
+  return record.spoken ?? `iteration ${record.iteration}, energy ${number(record.energy)}, ${record.inverted} inverted`;
 }
 
 /** Names of methods, as people write them. */
 export const METHODS = {
   wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', 'l-bfgs': 'L-BFGS', arap: 'ARAP',
+  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton',
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
+
+/** Methods that cannot begin at a start with inverted triangles, unless the energy allows it. */
+export const NEEDS_INJECTIVE = ['cm', 'slim'];
+
+/** Methods that minimise symmetric Dirichlet alone. */
+export const MAJORIZES = ['cm', 'wrapd+cm'];
+
+/** Starts that are full of inversions. */
+export const FOLDED_STARTS = ['random', 'collapsed'];
 
 /** Why a run ended. */
 export function ending(step) {

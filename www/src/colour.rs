@@ -71,8 +71,17 @@ pub struct CurveStyle {
 pub fn curve_style(method: &str) -> CurveStyle {
     let (light, dark, dash): (Rgb, Rgb, &[f32]) = match method {
         "wrapd" => ([0, 114, 178], [86, 180, 233], &[]),
-        "r-admm" => ([0, 128, 96], [0, 178, 134], &[7.0, 3.0]),
-        "w-admm" => ([170, 110, 0], [230, 159, 0], &[3.0, 3.0]),
+        "wrapd+cm" => ([16, 42, 112], [138, 152, 255], &[13.0, 3.0]),
+        "cm" => ([0, 132, 96], [0, 190, 142], &[5.0, 2.0]),
+        "slim" => (
+            [204, 112, 0],
+            [240, 165, 30],
+            &[7.0, 2.5, 1.5, 2.5, 1.5, 2.5],
+        ),
+        "newton" => ([28, 30, 33], [230, 231, 232], &[10.0, 3.0]),
+        "wrapd+newton" => ([70, 40, 120], [184, 160, 250], &[13.0, 3.0, 2.0, 3.0]),
+        "r-admm" => ([24, 122, 140], [96, 200, 216], &[7.0, 3.0]),
+        "w-admm" => ([122, 116, 16], [206, 198, 84], &[3.0, 3.0]),
         "admm-pd" => ([110, 114, 120], [160, 165, 172], &[1.5, 3.0]),
         "l-bfgs" => ([126, 96, 62], [196, 166, 128], &[9.0, 3.0, 3.0, 3.0]),
         "arap" => ([164, 76, 130], [204, 121, 167], &[7.0, 3.0, 1.5, 3.0]),
@@ -201,7 +210,19 @@ mod tests {
 
     #[test]
     fn solver_curves_are_visible_and_distinct() {
-        let methods = ["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "arap"];
+        let methods = [
+            "wrapd",
+            "wrapd+cm",
+            "cm",
+            "slim",
+            "newton",
+            "wrapd+newton",
+            "r-admm",
+            "w-admm",
+            "admm-pd",
+            "l-bfgs",
+            "arap",
+        ];
         for (i, a) in methods.iter().enumerate() {
             assert!(contrast(curve_style(a).light, LIGHT.ground) >= 3.0, "{a}");
             assert!(contrast(curve_style(a).dark, DARK.ground) >= 3.0, "{a}");

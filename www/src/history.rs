@@ -57,16 +57,18 @@ pub struct Record {
     pub reweighted: bool,
     /// Seconds since the solver started, setup apart.
     pub seconds: f64,
+    /// Of a method in two stages: the iteration with which the first ended, once it has.
+    pub switched_at: Option<u32>,
     /// The phases of the iteration that led here.
     pub phases: Vec<Phase>,
 }
 
 /// How many numbers the page sends with an iterate, phases apart.
-pub const RECORD_WIDTH: usize = 9;
+pub const RECORD_WIDTH: usize = 10;
 
 impl Record {
-    /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields, and three
-    /// (kind, count, milliseconds) for every phase. `None` if the first is too short.
+    /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields (−1 for a switch that
+    /// has not been), and three (kind, count, milliseconds) for every phase. `None` if the first is too short.
     pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
         let &[
             iteration,
@@ -78,6 +80,7 @@ impl Record {
             lbfgs,
             reweighted,
             seconds,
+            switched_at,
         ] = numbers
         else {
             return None;
@@ -92,6 +95,7 @@ impl Record {
             lbfgs_iterations: lbfgs as u32,
             reweighted: reweighted != 0.0,
             seconds,
+            switched_at: (switched_at >= 0.0).then_some(switched_at as u32),
             phases: phases
                 .as_chunks::<3>()
                 .0
@@ -222,7 +226,7 @@ mod tests {
     #[test]
     fn records_come_from_numbers() {
         let r = Record::from_numbers(
-            &[3.0, 1.5, 0.0, 1e-3, 0.5, 1.25, 2.0, 1.0, 0.25],
+            &[3.0, 1.5, 0.0, 1e-3, 0.5, 1.25, 2.0, 1.0, 0.25, 2.0],
             &[0.0, 1.0, 4.5, 1.0, 2.0, 3.5],
         )
         .unwrap();
@@ -238,13 +242,15 @@ mod tests {
                 milliseconds: 3.5
             }
         );
-        assert_eq!(r.worst_distortion(), 2.0);
+        assert_eq!((r.worst_distortion(), r.switched_at), (2.0, Some(2)));
         assert!(Record::from_numbers(&[1.0], &[]).is_none());
     }
 
     #[test]
     fn an_inverted_map_has_no_finite_distortion() {
-        let r = Record::from_numbers(&[0.0, 9.0, 4.0, 0.0, -0.5, 1.0, 0.0, 0.0, 0.0], &[]).unwrap();
+        let r = Record::from_numbers(&[0.0, 9.0, 4.0, 0.0, -0.5, 1.0, 0.0, 0.0, 0.0, -1.0], &[])
+            .unwrap();
         assert_eq!(r.worst_distortion(), f64::INFINITY);
+        assert_eq!(r.switched_at, None);
     }
 }

@@ -84,6 +84,25 @@ pub fn number(value: f64, digits: usize) -> String {
     .replace('-', "−")
 }
 
+/// So many seconds with three significant digits, in milliseconds below one.
+pub fn duration(seconds: f64) -> String {
+    if seconds < 1.0 {
+        format!("{} ms", number(1e3 * seconds, 3))
+    } else {
+        format!("{} s", number(seconds, 3))
+    }
+}
+
+/// A tick of an axis of seconds that ends at `end`: a round number of milliseconds or of seconds.
+pub fn time_tick(seconds: f64, end: f64) -> String {
+    let round = |value: f64| (1e6 * value).round() / 1e6;
+    match seconds {
+        0.0 => "0".into(),
+        _ if end < 1.0 => format!("{} ms", round(1e3 * seconds)),
+        _ => format!("{} s", round(seconds)),
+    }
+}
+
 /// A power of ten as a tick label.
 pub fn power_of_ten(value: f64) -> String {
     let exponent = value.log10().round() as i32;
@@ -159,6 +178,15 @@ mod tests {
             assert_eq!(number(value, 4), text);
         }
         assert_eq!(power_of_ten(1e-12), "10⁻¹²");
+        assert_eq!([duration(0.0392), duration(1.5)], ["39.2 ms", "1.50 s"]);
+        let ticks = |end| {
+            linear_ticks(end, 4)
+                .into_iter()
+                .map(move |t| time_tick(t, end))
+        };
+        assert_eq!(ticks(0.047).collect::<Vec<_>>(), ["0", "20 ms", "40 ms"]);
+        assert_eq!(ticks(0.7).last().as_deref(), Some("600 ms"));
+        assert_eq!(ticks(3.0).collect::<Vec<_>>(), ["0", "1 s", "2 s", "3 s"]);
         assert_eq!(whole(1234), "1234");
         assert_eq!(whole(1_234_567), "1\u{a0}234\u{a0}567");
     }

@@ -68,6 +68,11 @@ pub fn method_name(method: &str) -> &str {
         "w-admm" => "W-ADMM",
         "admm-pd" => "ADMM-PD",
         "l-bfgs" => "L-BFGS",
+        "cm" => "CM",
+        "wrapd+cm" => "WRAPD+CM",
+        "slim" => "SLIM",
+        "newton" => "Newton",
+        "wrapd+newton" => "WRAPD+Newton",
         "arap" => "ARAP",
         "lscm" => "LSCM",
         "harmonic" => "Harmonic",
@@ -79,7 +84,10 @@ pub fn method_name(method: &str) -> &str {
 /// Where a method comes from.
 pub fn citation(method: &str) -> &'static str {
     match method {
-        "wrapd" | "r-admm" | "w-admm" => "Brown & Narain 2021",
+        "wrapd" | "r-admm" | "w-admm" | "wrapd+cm" | "wrapd+newton" => "Brown & Narain 2021",
+        "cm" => "Shtengel et al. 2017",
+        "slim" => "Rabinovich et al. 2017",
+        "newton" => "Smith et al. 2019",
         "admm-pd" => "Overby et al. 2017",
         "l-bfgs" => "Liu et al. 2017",
         "arap" => "Liu et al. 2008",
@@ -90,9 +98,85 @@ pub fn citation(method: &str) -> &'static str {
     }
 }
 
+/// The method that makes an iteration of `method`: of the two in a hybrid the second, once the first has ended.
+pub fn stage(method: &str, iteration: u32, switched_at: Option<u32>) -> &str {
+    let second = switched_at.is_some_and(|last| iteration > last);
+    match method.split_once('+') {
+        Some((_, then)) if second => then,
+        Some((first, _)) => first,
+        None => method,
+    }
+}
+
+/// When a hybrid switched, in one sentence; nothing of other methods.
+pub fn handover(method: &str, switched_at: Option<u32>) -> Option<String> {
+    let (first, then) = method.split_once('+')?;
+    let (first, then) = (method_name(first), method_name(then));
+    Some(match switched_at {
+        Some(1) => format!("{first} made iteration 1; {then} goes on from there."),
+        Some(last) => format!("{first} made iterations 1 to {last}; {then} goes on from there."),
+        None => {
+            format!("{first} for now; {then} takes over at the first iterate without inversions.")
+        }
+    })
+}
+
+/// What a phase of a second-order method's iteration does.
+fn second_order(method: &str, kind: PhaseKind) -> Explanation {
+    match kind {
+        PhaseKind::Local => match method {
+            "cm" => Explanation {
+                name: "Majorize",
+                symbol: "Hᵢ ← convex part of ∂²ψᵢ",
+                equation: "Shtengel 2017",
+                unit: None,
+                sentence: "Every {element} on its own gives the Hessian of a convex function that lies above its energy and touches it here.",
+            },
+            "slim" => Explanation {
+                name: "Reweight",
+                symbol: "Wᵢ from σ(Fᵢ), Rᵢ",
+                equation: "Rabinovich 2017",
+                unit: None,
+                sentence: "Every {element} on its own gives the weights with which ½‖W(F − R)‖² has the gradient of its energy.",
+            },
+            _ => Explanation {
+                name: "Hessians",
+                symbol: "Hᵢ ← ∂²ψᵢ, made convex",
+                equation: "Smith 2019",
+                unit: None,
+                sentence: "Every {element} on its own gives the Hessian of its energy, with its negative eigenvalues, which have closed forms, set to zero; near the minimum they are kept.",
+            },
+        },
+        PhaseKind::Reweight => Explanation {
+            name: "Factor",
+            symbol: "H = L Lᵀ",
+            equation: "Cholesky",
+            unit: Some(["factor", "factors"]),
+            sentence: "The matrix of all vertices is factored anew in every step; its pattern never changes.",
+        },
+        PhaseKind::Global => Explanation {
+            name: "Direction",
+            symbol: "H D = −g",
+            equation: "Newton",
+            unit: Some(["solve", "solves"]),
+            sentence: "All vertices together: one linear solve with that factor gives the direction, from the gradient g.",
+        },
+        PhaseKind::Evaluate => Explanation {
+            name: "Line search",
+            symbol: "X ← X + αD",
+            equation: "Smith & Schaefer 2015",
+            unit: Some(["trial", "trials"]),
+            sentence: "The step is cut before the first {element} would invert, then shortened until the energy falls enough.",
+        },
+    }
+}
+
 /// What a phase of a method's iteration does. Equation numbers are those of the WRAPD paper
 /// (Brown & Narain 2021) unless a name says otherwise.
 pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
+    if matches!(method, "cm" | "slim" | "newton") {
+        return second_order(method, kind);
+    }
     let rotation_aware = matches!(method, "wrapd" | "r-admm");
     match (method, kind) {
         ("arap", PhaseKind::Local) => Explanation {
@@ -197,7 +281,20 @@ mod tests {
     #[test]
     fn every_phase_of_every_method_is_explained() {
         for method in [
-            "wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "arap", "lscm", "harmonic", "tutte",
+            "wrapd",
+            "r-admm",
+            "w-admm",
+            "admm-pd",
+            "l-bfgs",
+            "cm",
+            "wrapd+cm",
+            "slim",
+            "newton",
+            "wrapd+newton",
+            "arap",
+            "lscm",
+            "harmonic",
+            "tutte",
         ] {
             assert!(!citation(method).is_empty());
             for kind in [
@@ -217,6 +314,19 @@ mod tests {
                 assert!(!e.symbol.is_empty() && !e.equation.is_empty());
             }
         }
+    }
+
+    #[test]
+    fn a_hybrid_is_explained_by_the_stage_it_is_in() {
+        assert_eq!(stage("wrapd+cm", 4, None), "wrapd");
+        assert_eq!(stage("wrapd+cm", 4, Some(4)), "wrapd");
+        assert_eq!(stage("wrapd+cm", 5, Some(4)), "cm");
+        assert_eq!(stage("cm", 5, None), "cm");
+        let words = handover("wrapd+newton", Some(7)).unwrap_or_default();
+        assert!(words.contains("1 to 7; Newton goes on"), "{words}");
+        assert!(handover("wrapd+cm", None).is_some_and(|words| words.contains("CM takes over")));
+        assert!(handover("wrapd+cm", Some(1)).is_some_and(|words| words.contains("iteration 1;")));
+        assert_eq!(handover("wrapd", None), None);
     }
 
     #[test]

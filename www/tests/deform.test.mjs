@@ -241,7 +241,7 @@ describe('opening', () => {
     assert.equal((await status(page)).iteration, 0);
     await page.keyboard.press('ArrowRight');
     await page.waitForFunction(() => globalThis.foldfreePage.shown === 1);
-    await page.keyboard.press('m');
+    await page.click('[data-mode-button="flatten"]');
     assert.equal((await status(page)).text, before.text);
     assert.doesNotMatch(page.url(), /mode=/);
     assert.ok(await page.isHidden('#presets') && await page.isVisible('#sample'));
@@ -303,6 +303,17 @@ describe('solving', () => {
     await rest(page);
     assert.equal((await status(page)).inverted, 0);
     assert.ok(Math.abs((await width()) - pressed) < 0.3 * pressed);
+  });
+
+  onPage('a hybrid with Newton’s method, from an address: it switches when nothing is inverted, and rests', { query: `${SMALL}&preset=random&method=wrapd%2Bnewton` }, async (page) => {
+    assert.equal(await page.inputValue('#deform-method'), 'wrapd+newton');
+    await page.click('#unfold');
+    await rest(page);
+    const records = await page.evaluate(() => globalThis.foldfreePage.session.records);
+    const { switchedAt, iteration, inverted, status: ended } = records.at(-1);
+    assert.deepEqual([inverted, ended], [0, 'converged']);
+    assert.ok(switchedAt >= 1 && switchedAt < iteration, `${switchedAt} of ${iteration}`);
+    assert.ok(records[switchedAt - 1].inverted > 0 && records.slice(switchedAt).every((record) => record.inverted === 0));
   });
 
   onPage('solver, material and moduli change on the way; a bad number is told off in its field', { query: `${SMALL}&preset=twist` }, async (page) => {
@@ -606,7 +617,7 @@ describe('for everybody', () => {
   for (const colorScheme of ['light', 'dark']) {
     onPage(`no accessibility violation, ${colorScheme}`, { colorScheme, query: SMALL, viewport: WIDE }, async (page) => {
       await audit(page, 'start');
-      const strip = await page.locator('.strip').boundingBox();
+      const strip = await page.locator('.strip:visible').boundingBox();
       assert.ok(strip.height < 50, `the strip is one row: ${strip.height}`);
       await page.click('#step');
       await page.click('#help');

@@ -113,7 +113,7 @@ describe('solving', () => {
   });
 
   onPage('every solver runs on the same problem, and its curve stays', { query: '?triangles=1000&start=automatic' }, async (page) => {
-    for (const method of ['admm-pd', 'w-admm', 'r-admm', 'arap', 'lscm', 'harmonic', 'tutte', 'wrapd']) {
+    for (const method of ['admm-pd', 'w-admm', 'r-admm', 'slim', 'cm', 'wrapd+cm', 'arap', 'lscm', 'harmonic', 'tutte', 'wrapd']) {
       await page.selectOption('#method', method);
       await page.waitForFunction((m) => globalThis.foldfreePage.session.problem.settings.method === m, method);
       await page.click('#step-ten');
@@ -121,6 +121,36 @@ describe('solving', () => {
       assert.ok((await status(page)).iteration >= (['lscm', 'harmonic', 'tutte'].includes(method) ? 0 : 1), method);
     }
     assert.ok(await page.isHidden('#notice'));
+  });
+});
+
+describe('second-order methods', () => {
+  onPage('CM is picked on a folded start: it begins at one without inversions, and says so', { query: '?triangles=1000' }, async (page) => {
+    assert.equal(await page.inputValue('#start'), 'random');
+    await page.selectOption('#method', 'cm');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem?.settings.method === 'cm');
+    assert.equal(await page.inputValue('#start'), 'automatic');
+    assert.match(await page.textContent('#notice'), /cannot begin with inverted triangles/);
+    await playToTheEnd(page);
+    const end = await status(page);
+    assert.ok(end.inverted === 0 && end.iteration < 40 && end.energy < 1.2, end.text);
+    // but who asks for the impossible is told
+    await page.selectOption('#start', 'random');
+    await page.waitForFunction(() => /CM could not start/.test(document.getElementById('notice').textContent));
+    assert.equal(await page.inputValue('#start'), 'automatic');
+  });
+
+  onPage('a hybrid says when it switched, from an address', { query: '?triangles=1000&method=wrapd+cm' }, async (page) => {
+    assert.equal(await page.inputValue('#method'), 'wrapd+cm');
+    assert.equal(await page.inputValue('#start'), 'random');
+    await playToTheEnd(page);
+    const records = await page.evaluate(() => globalThis.foldfreePage.session.records);
+    const { switchedAt, iteration, inverted } = records.at(-1);
+    assert.ok(switchedAt >= 1 && switchedAt < iteration && inverted === 0);
+    assert.ok(records[switchedAt - 1].inverted > 0 && records[switchedAt - 1].switchedAt === undefined, 'WRAPD ends when nothing is inverted');
+    assert.match(page.url(), /method=wrapd%2Bcm/);
+    const trace = JSON.parse((await download(page, '#export-trace')).bytes.toString());
+    assert.equal(trace.iterations.at(-1).switchedAt, switchedAt);
   });
 });
 

@@ -8,7 +8,7 @@ use wasm_bindgen::JsValue;
 
 use super::bench::{Bench, Event};
 use super::stage::Stage;
-use super::{inspector, map, plot, shape, solid, style};
+use super::{inspector, map, plot, race, shape, solid, style};
 use crate::colour::Theme;
 use crate::layout::{self, View};
 
@@ -60,6 +60,7 @@ impl eframe::App for Page {
 fn spell(event: Event) -> (&'static str, JsValue) {
     match event {
         Event::Show(index) => ("show", JsValue::from_f64(index as f64)),
+        Event::Moment(at) => ("moment", JsValue::from_f64(at)),
         Event::Pin(vertices) => ("pin", js_sys::Uint32Array::from(&vertices[..]).into()),
         Event::Select(handle) => (
             "select",
@@ -78,7 +79,11 @@ fn spell(event: Event) -> (&'static str, JsValue) {
 
 fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
     let all = ui.max_rect();
-    let views = layout::arrange(
+    let arrange = match bench.race {
+        Some(_) => layout::arrange_race,
+        None => layout::arrange,
+    };
+    let views = arrange(
         all.width(),
         all.height(),
         bench.alone,
@@ -93,6 +98,9 @@ fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
             match view {
                 View::Shape if bench.body.is_some() => solid::show_skin(ui, rect, bench),
                 View::Map if bench.body.is_some() => solid::show_cut(ui, rect, bench),
+                View::Map if bench.race.is_some() => hover = race::panes::show(ui, rect, bench),
+                View::Plot if bench.race.is_some() => race::curves::show(ui, rect, bench),
+                View::Inspector if bench.race.is_some() => race::table::show(ui, rect, bench),
                 View::Shape => shape::show(ui, rect, bench),
                 View::Map => hover = map::show(ui, rect, bench),
                 View::Plot => plot::show(ui, rect, bench),

@@ -2,7 +2,9 @@
 
 use glam::{Vec2, Vec3};
 
-use super::gpu::{self, Look, MapData};
+use super::gpu::{self, Look};
+use super::painting::{Painted, Painting};
+use super::race::Race;
 use super::solid::Body;
 use crate::camera::{Orbit, Pan};
 use crate::colour::{DARK, LIGHT, Theme};
@@ -14,10 +16,6 @@ use crate::words::{Nouns, SOLID, SURFACE};
 
 /// Memory for the iterates of one run.
 const FRAME_BUDGET: usize = 192 << 20;
-
-/// How many times a map may cover itself before its triangles are drawn one for many: what lies
-/// deeper cannot be seen, and painting it would stop a graphics card.
-const MOST_LAYERS: usize = 24;
 
 /// Iterates, the newest, whose phases are kept: a person may drag for hours.
 const MOST_PHASES: usize = 5000;
@@ -63,6 +61,8 @@ pub enum Event {
     Show(usize),
     /// Vertices are to be held together.
     Pin(Vec<u32>),
+    /// A person chose a moment of a comparison's clock.
+    Moment(f64),
     /// A handle was chosen, or none.
     Select(Option<usize>),
     /// A handle is being dragged from now on.
@@ -83,6 +83,8 @@ pub struct Bench {
     pub problem: Problem,
     /// The solid, where a solid is on the bench.
     pub body: Option<Body>,
+    /// Several solvers on the surface, where they are compared.
+    pub race: Option<Race>,
     /// The run on the bench.
     pub run: Run,
     /// Its maps.
@@ -132,16 +134,7 @@ pub struct Bench {
     /// Events for the page.
     pub events: Vec<Event>,
     stale: bool,
-    scratch: Scratch,
-}
-
-#[derive(Default)]
-struct Scratch {
-    distortions: Vec<f32>,
-    corner_distortions: Vec<f32>,
-    corners: Vec<f32>,
-    boundary: Vec<f32>,
-    order: Vec<u32>,
+    painting: Painting,
 }
 
 impl Bench {
@@ -150,6 +143,7 @@ impl Bench {
         Self {
             problem: Problem::default(),
             body: None,
+            race: None,
             run: Run::default(),
             frames: Frames::new(FRAME_BUDGET),
             earlier: Vec::new(),
@@ -175,7 +169,16 @@ impl Bench {
             crossings: Vec::new(),
             events: Vec::new(),
             stale: false,
-            scratch: Scratch::default(),
+            painting: Painting::default(),
+        }
+    }
+
+    /// An empty bench on which solvers are compared.
+    pub fn comparing() -> Self {
+        Self {
+            race: Some(Race::default()),
+            plot_height: PlotHeight::Gap,
+            ..Self::new()
         }
     }
 
@@ -193,6 +196,10 @@ impl Bench {
             self.orbit = Orbit::around(positions);
             self.pan = Pan::default();
         }
+        self.forget_runs();
+        if self.race.is_some() {
+            return; // where solvers are compared only their maps are drawn
+        }
         let single: Vec<f32> = positions.iter().map(|p| *p as f32).collect();
         let normals = outline::vertex_normals(positions, indices);
         let (mut corners, mut corner_normals, mut seam) = (Vec::new(), Vec::new(), Vec::new());
@@ -202,7 +209,6 @@ impl Bench {
             seam.extend_from_slice(&single[3 * *v as usize..][..3]);
         }
         gpu::with(|gpu| gpu.set_surface(&corners, &corner_normals, &seam));
-        self.forget_runs();
     }
 
     /// Forgets all runs.
@@ -298,6 +304,10 @@ impl Bench {
         if !std::mem::take(&mut self.stale) {
             return;
         }
+        if let Some(race) = &mut self.race {
+            race.refresh(&self.problem, &mut self.painting);
+            return;
+        }
         let Some((index, map)) = self.frames.at(self.shown) else {
             return;
         };
@@ -306,30 +316,14 @@ impl Bench {
             body.refresh(map);
             return;
         }
-        let indices = &self.problem.indices;
-        let scratch = &mut self.scratch;
-        self.inverted = self
-            .problem
-            .rest
-            .distortions(indices, map, &mut scratch.distortions);
-        scratch.corner_distortions.clear();
-        scratch
-            .corner_distortions
-            .extend(scratch.distortions.iter().flat_map(|d| [*d; 3]));
-        outline::per_corner(indices, map, 2, &mut scratch.corners);
-        self.layers = outline::layers(indices, map);
-        self.thinning = self.layers.div_ceil(MOST_LAYERS).max(1);
-        outline::painting_order(&scratch.distortions, self.thinning, &mut scratch.order);
-        scratch.boundary.clear();
-        outline::segments_of_edges(&self.problem.boundary, map, &mut scratch.boundary);
-        gpu::with(|gpu| {
-            gpu.set_map(&MapData {
-                corners: &scratch.corners,
-                distortions: &scratch.corner_distortions,
-                order: &scratch.order,
-                boundary: &scratch.boundary,
-            });
+        let Painted {
+            inverted,
+            thinning,
+            layers,
+        } = self.painting.paint(&self.problem, map, |data| {
+            gpu::with(|gpu| gpu.set_map(data));
         });
+        (self.inverted, self.thinning, self.layers) = (inverted, thinning, layers);
     }
 
     /// The window that would show all of the map on show.
@@ -356,6 +350,9 @@ impl Bench {
 
     /// Inverted or collapsed elements of the iterate on show, as drawn.
     pub fn drawn_inverted(&self) -> usize {
+        if let Some(race) = &self.race {
+            return race.lanes.iter().map(|lane| lane.inverted.len()).sum();
+        }
         self.body
             .as_ref()
             .map_or(self.inverted.len(), |body| body.inverted.len())

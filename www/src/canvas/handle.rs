@@ -8,6 +8,7 @@ use glam::Vec3;
 use wasm_bindgen::prelude::*;
 
 use super::bench::Bench;
+use super::race::Race;
 use super::solid::{Body, Cut};
 use super::stage::{Mode, Stage};
 use crate::history::Record;
@@ -36,6 +37,14 @@ impl BenchHandle {
             self.context.request_repaint();
         }
         f(stage.bench(self.mode))
+    }
+
+    fn race(&self, f: impl FnOnce(&mut Race)) {
+        self.change(|bench| {
+            if let Some(race) = &mut bench.race {
+                f(race);
+            }
+        });
     }
 
     fn body<R: Default>(&self, f: impl FnOnce(&mut Body) -> R) -> R {
@@ -69,14 +78,73 @@ impl BenchHandle {
         self.change(|bench| bench.begin_run(method, start, energy));
     }
 
-    /// Adds an iterate: nine numbers (iteration, energy, inverted, gradient norm, smallest σ,
-    /// largest σ, L-BFGS iterations, reweighted, seconds), three numbers a phase (kind, count,
+    /// Adds an iterate: ten numbers (iteration, energy, inverted, gradient norm, smallest σ, largest σ,
+    /// L-BFGS iterations, reweighted, seconds, iteration of the switch or −1), three numbers a phase (kind, count,
     /// milliseconds), and the map (n×2).
     #[wasm_bindgen(js_name = pushFrame)]
     pub fn push_frame(&self, numbers: &[f64], phases: &[f64], map: Vec<f32>) {
         if let Some(record) = Record::from_numbers(numbers, phases) {
             self.change(|bench| bench.push(record, map));
         }
+    }
+
+    /// Begins a comparison of these methods, with an energy.
+    #[wasm_bindgen(js_name = beginRace)]
+    pub fn begin_race(&self, methods: Vec<String>, energy: &str) {
+        self.change(|bench| {
+            bench.energy = energy.into();
+            bench.pan.follows = true;
+        });
+        self.race(|race| race.begin(&methods));
+    }
+
+    /// Adds an iterate of one of the solvers that are compared: numbers and phases as for `pushFrame`, and the map.
+    #[wasm_bindgen(js_name = pushLane)]
+    pub fn push_lane(&self, lane: usize, numbers: &[f64], phases: &[f64], map: Vec<f32>) {
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            self.change(|bench| bench.push_lane(lane, record, map));
+        }
+    }
+
+    /// Says how one of them ended, or (`failed`) what went wrong.
+    #[wasm_bindgen(js_name = endLane)]
+    pub fn end_lane(&self, lane: usize, words: &str, failed: bool) {
+        self.race(|race| {
+            if let Some(lane) = race.lanes.get_mut(lane) {
+                match failed {
+                    true => lane.error = Some(words.into()),
+                    false => lane.ending = words.into(),
+                }
+            }
+        });
+    }
+
+    /// Shows a record of each of them, at a time of their clock.
+    #[wasm_bindgen(js_name = showMoment)]
+    pub fn show_moment(&self, at: f64, shown: &[u32]) {
+        self.race(|race| race.show(at, shown));
+        self.change(Bench::redraw);
+    }
+
+    /// The lowest energy (not a number: none yet), and whether it is that of a solver that has converged.
+    #[wasm_bindgen(js_name = setBest)]
+    pub fn set_best(&self, energy: f64, settled: bool) {
+        self.race(|race| {
+            (race.best, race.settled) = (Some(energy).filter(|e| e.is_finite()), settled);
+        });
+    }
+
+    /// Whether the clock counts seconds (else iterations); the plot follows it.
+    #[wasm_bindgen(js_name = setClock)]
+    pub fn set_clock(&self, seconds: bool) {
+        self.race(|race| race.seconds = seconds);
+        self.change(|bench| bench.plot_seconds = seconds);
+    }
+
+    /// The map that a phone shows.
+    #[wasm_bindgen(js_name = setPane)]
+    pub fn set_pane(&self, pane: usize) {
+        self.race(|race| race.pane = pane);
     }
 
     /// Adds an iterate of a solid: numbers as for `pushFrame`, positions (n×3), and the stress of every

@@ -7,15 +7,15 @@ use super::style;
 use crate::colour::curve_style;
 use crate::history::{Phase, PhaseKind};
 use crate::scale::number;
-use crate::words::{citation, explain, method_name};
+use crate::words::{citation, explain, handover, method_name, stage};
 
 /// Writes lines from the top down.
-struct Column<'a> {
+pub(super) struct Column<'a> {
     ui: &'a mut egui::Ui,
     bench: &'a Bench,
-    left: f32,
-    right: f32,
-    y: f32,
+    pub(super) left: f32,
+    pub(super) right: f32,
+    pub(super) y: f32,
 }
 
 /// Draws the view.
@@ -25,13 +25,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         .auto_shrink(false)
         .show(ui, |ui| {
             let top = ui.cursor().top();
-            let mut column = Column {
-                bench,
-                left: rect.left() + 16.0,
-                right: rect.right() - 16.0,
-                y: top + 10.0,
-                ui,
-            };
+            let mut column = Column::new(ui, bench, rect, top + 10.0);
             column.step();
             column.iterate();
             clear = column.runs();
@@ -52,8 +46,30 @@ fn capital(word: &str) -> String {
         .unwrap_or_default()
 }
 
-impl Column<'_> {
-    fn text(&self, x: f32, y: f32, anchor: Align2, text: &str, medium: bool, quiet: bool) -> Rect {
+impl<'a> Column<'a> {
+    pub(super) fn new(ui: &'a mut egui::Ui, bench: &'a Bench, rect: Rect, y: f32) -> Self {
+        Self {
+            ui,
+            bench,
+            left: rect.left() + 16.0,
+            right: rect.right() - 16.0,
+            y,
+        }
+    }
+
+    pub(super) fn painter(&self) -> &egui::Painter {
+        self.ui.painter()
+    }
+
+    pub(super) fn text(
+        &self,
+        x: f32,
+        y: f32,
+        anchor: Align2,
+        text: &str,
+        medium: bool,
+        quiet: bool,
+    ) -> Rect {
         let theme = self.bench.theme;
         let size = self.bench.text * if quiet { style::SMALL } else { style::BODY };
         let font = if medium {
@@ -70,11 +86,11 @@ impl Column<'_> {
         )
     }
 
-    fn line(&self) -> f32 {
+    pub(super) fn line(&self) -> f32 {
         19.0 * self.bench.text
     }
 
-    fn section(&mut self, title: &str, rest: &str) {
+    pub(super) fn section(&mut self, title: &str, rest: &str) {
         let end = self.text(self.left, self.y, Align2::LEFT_TOP, title, true, false);
         if !rest.is_empty() {
             self.text(
@@ -89,7 +105,7 @@ impl Column<'_> {
         self.y = end.bottom() + 6.0;
     }
 
-    fn rule(&mut self) {
+    pub(super) fn rule(&mut self) {
         self.y += 6.0;
         let stroke = Stroke::new(1.0, style::colour(self.bench.theme.line));
         self.ui
@@ -98,7 +114,7 @@ impl Column<'_> {
         self.y += 11.0;
     }
 
-    fn pair(&mut self, name: &str, value: &str, hint: &str) {
+    pub(super) fn pair(&mut self, name: &str, value: &str, hint: &str) {
         let middle = self.y + 0.5 * self.line();
         let room = self.right - self.left;
         let first = self.text(self.left, middle, Align2::LEFT_CENTER, name, false, true);
@@ -123,7 +139,7 @@ impl Column<'_> {
     /// The phases of the iteration on show.
     fn step(&mut self) {
         let nouns = self.bench.nouns();
-        let method = self.bench.run.method.as_str();
+        let run = self.bench.run.method.as_str();
         let Some(record) = self.bench.record() else {
             self.section("This step", "");
             return;
@@ -131,23 +147,13 @@ impl Column<'_> {
         if record.iteration == 0 {
             self.section(
                 "The start",
-                &format!("{}, {}", method_name(method), citation(method)),
+                &format!("{}, {}", method_name(run), citation(run)),
             );
-            let words = "No step has been made. Play or step to see what an iteration does.";
-            let font = style::regular(style::SMALL * self.bench.text);
-            let quiet = style::colour(self.bench.theme.quiet);
-            let galley =
-                self.ui
-                    .painter()
-                    .layout(words.into(), font, quiet, self.right - self.left);
-            let height = galley.size().y;
-            self.ui
-                .painter()
-                .galley(pos2(self.left, self.y), galley, quiet);
-            self.y += height;
+            self.words("No step has been made. Play or step to see what an iteration does.");
             self.rule();
             return;
         }
+        let method = stage(run, record.iteration, record.switched_at);
         let title = format!("Iteration {}", record.iteration);
         self.section(
             &title,
@@ -247,7 +253,21 @@ impl Column<'_> {
         if matches!(method, "wrapd" | "w-admm") {
             self.pair("weights", weights, &format!("Weights change only when that of some {} is off by more than γ = 1.5, equation (23); then the Laplacian is factored again and the L-BFGS history is dropped.", nouns.element));
         }
+        if let Some(words) = handover(run, record.switched_at) {
+            self.words(&words);
+        }
         self.rule();
+    }
+
+    /// A sentence or two over the width of the column.
+    pub(super) fn words(&mut self, words: &str) {
+        let font = style::regular(style::SMALL * self.bench.text);
+        let quiet = style::colour(self.bench.theme.quiet);
+        let painter = self.ui.painter();
+        let galley = painter.layout(words.into(), font, quiet, self.right - self.left);
+        let height = galley.size().y;
+        painter.galley(pos2(self.left, self.y), galley, quiet);
+        self.y += height;
     }
 
     /// The numbers of the iterate on show.
@@ -385,7 +405,7 @@ impl Column<'_> {
     }
 
     /// The problem.
-    fn facts(&mut self) {
+    pub(super) fn facts(&mut self) {
         if self.bench.facts.is_empty() {
             return;
         }

@@ -105,7 +105,7 @@ fn clamped(painter: &egui::Painter, swatch: Rect, colour: Rgb) {
 ///
 /// `drawn` is their number as drawn, for when the solver has not counted.
 pub fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench, drawn: usize) -> f32 {
-    let (theme, text) = (bench.theme, bench.text);
+    let theme = bench.theme;
     let reported = bench.record().map_or(drawn, |r| r.inverted as usize);
     let words = if reported == 0 {
         "none inverted".to_owned()
@@ -117,9 +117,25 @@ pub fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench, drawn: u
     } else {
         theme.warn
     };
+    count_key(painter, rect, bench, reported > 0, &words, ink)
+}
+
+/// A count of what is inverted in words, with the hatch if there is any; returns its left edge.
+pub fn count_key(
+    painter: &egui::Painter,
+    rect: Rect,
+    bench: &Bench,
+    any: bool,
+    words: &str,
+    ink: Rgb,
+) -> f32 {
+    let (theme, text) = (bench.theme, bench.text);
     let at = pos2(rect.right() - 14.0, rect.top() + 10.0);
-    let galley =
-        painter.layout_no_wrap(words, style::medium(style::BODY * text), style::colour(ink));
+    let galley = painter.layout_no_wrap(
+        words.to_owned(),
+        style::medium(style::BODY * text),
+        style::colour(ink),
+    );
     let place = Align2::RIGHT_TOP.anchor_size(at, galley.size());
     painter.rect_filled(
         place.expand2(vec2(26.0 * text, 3.0)).intersect(rect),
@@ -133,7 +149,7 @@ pub fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench, drawn: u
         pos2(place.left() - 0.5 * side - 7.0, middle),
         vec2(side, side),
     );
-    if reported == 0 {
+    if !any {
         return place.left() - 12.0;
     }
     painter.rect_filled(key, 0.0, Color32::from_rgb(255, 230, 209));

@@ -17,7 +17,7 @@ const MOST_RINGS: usize = 80;
 /// Crosses drawn where the boundary meets itself, at most.
 const MOST_CROSSES: usize = 200;
 
-const LEGEND: Legend = Legend {
+pub(super) const LEGEND: Legend = Legend {
     caption: "stretch or squeeze, max(σ₁, 1/σ₂)",
     short: "stretch or squeeze",
     ramp: colour::cividis,
@@ -80,7 +80,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) -> Option<usize> {
         })),
     });
 
-    rings(ui.painter(), inner, bench, size);
+    rings(ui.painter(), inner, bench, bench.map(), &bench.inverted);
     crossings(ui.painter(), inner, bench, size);
     let found = response
         .hover_pos()
@@ -138,13 +138,20 @@ fn describe(bench: &Bench, t: usize) -> Option<String> {
 }
 
 /// Rings around inverted triangles too small to be seen.
-fn rings(painter: &egui::Painter, rect: Rect, bench: &Bench, size: Vec2) {
-    let Some(map) = bench.map() else { return };
-    if bench.inverted.is_empty() || bench.inverted.len() > MOST_RINGS {
+pub(super) fn rings(
+    painter: &egui::Painter,
+    rect: Rect,
+    bench: &Bench,
+    map: Option<&[f32]>,
+    inverted: &[u32],
+) {
+    let Some(map) = map else { return };
+    if inverted.is_empty() || inverted.len() > MOST_RINGS {
         return;
     }
+    let size = Vec2::new(rect.width(), rect.height()).max(Vec2::ONE);
     let triangles = bench.problem.indices.as_chunks::<3>().0;
-    for &t in &bench.inverted {
+    for &t in inverted {
         let corners = corners_of(&triangles[t as usize], map)
             .map(|c| bench.pan.to_view(Vec2::from_array(c), size));
         let centre = (corners[0] + corners[1] + corners[2]) / 3.0;

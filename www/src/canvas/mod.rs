@@ -7,7 +7,9 @@ mod handle;
 mod inspector;
 mod legend;
 mod map;
+mod painting;
 mod plot;
+mod race;
 mod shape;
 mod solid;
 mod stage;
@@ -36,7 +38,8 @@ pub struct Canvas {
 #[wasm_bindgen]
 impl Canvas {
     /// Starts drawing on a canvas element. `listen(name, value)` hears what people do on it:
-    /// `show` (an iterate was chosen on the plot: its index); on a solid `pin` (vertices),
+    /// `show` (an iterate was chosen on the plot: its index); where solvers are compared `moment` (of their
+    /// clock, chosen on the plot); on a solid `pin` (vertices),
     /// `select` (a handle's index or -1), `grab-handle` (its index), `grab-vertex` (the vertex), `drag`
     /// (x y z, how far it has come since), `turn` (by how many radians since), `drop`.
     pub async fn start(
@@ -74,13 +77,13 @@ impl Canvas {
         })
     }
 
-    /// The bench of a mode (`flatten`, `deform`), or of the mode on show.
+    /// The bench of a mode (`flatten`, `deform`, `compare`), or of the mode on show.
     pub fn bench(&self, mode: &str) -> BenchHandle {
         let mode = Mode::from_name(mode).unwrap_or_else(|| self.stage.borrow().mode());
         BenchHandle::new(self.stage.clone(), self.context.clone(), mode)
     }
 
-    /// Shows the bench of a mode (`flatten`, `deform`).
+    /// Shows the bench of a mode (`flatten`, `deform`, `compare`).
     #[wasm_bindgen(js_name = setMode)]
     pub fn set_mode(&self, name: &str) {
         if let Some(mode) = Mode::from_name(name) {

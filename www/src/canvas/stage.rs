@@ -10,6 +10,8 @@ pub enum Mode {
     Flatten,
     /// Solids and their handles.
     Deform,
+    /// Several solvers on one surface.
+    Compare,
 }
 
 impl Mode {
@@ -18,6 +20,7 @@ impl Mode {
         match name {
             "flatten" => Some(Self::Flatten),
             "deform" => Some(Self::Deform),
+            "compare" => Some(Self::Compare),
             _ => None,
         }
     }
@@ -25,7 +28,7 @@ impl Mode {
 
 /// One bench a mode: what lies on each stays when another is shown.
 pub struct Stage {
-    benches: [Bench; 2],
+    benches: [Bench; 3],
     mode: Mode,
 }
 
@@ -33,7 +36,7 @@ impl Stage {
     /// Empty benches; flattening is shown.
     pub fn new() -> Self {
         Self {
-            benches: [Bench::new(), Bench::new()],
+            benches: [Bench::new(), Bench::new(), Bench::comparing()],
             mode: Mode::default(),
         }
     }
@@ -64,7 +67,7 @@ impl Stage {
     }
 
     /// All benches, for what they share: theme, text size, layout.
-    pub fn all(&mut self) -> &mut [Bench; 2] {
+    pub fn all(&mut self) -> &mut [Bench; 3] {
         &mut self.benches
     }
 }

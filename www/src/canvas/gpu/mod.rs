@@ -1,7 +1,9 @@
 //! What the canvas keeps on the graphics card, and how it is drawn (WebGL 2, safe bindings only).
 
+mod pane;
 mod solid;
 
+use pane::Pane;
 pub use solid::{SolidData, SolidLook};
 
 use std::cell::RefCell;
@@ -74,6 +76,17 @@ pub struct Gpu {
     painted_corners: i32,
     seam_count: i32,
     boundary_count: i32,
+    /// Maps that are shown side by side, made when they are first wanted.
+    panes: Vec<Pane>,
+}
+
+fn fill(gl: &Gl, buffer: &WebGlBuffer, data: &[f32]) {
+    gl.bind_buffer(Gl::ARRAY_BUFFER, Some(buffer));
+    gl.buffer_data_with_u8_array(
+        Gl::ARRAY_BUFFER,
+        bytemuck::cast_slice(data),
+        Gl::DYNAMIC_DRAW,
+    );
 }
 
 /// The iterate on show, per corner, as the GPU takes it.
@@ -128,6 +141,7 @@ impl Gpu {
             painted_corners: 0,
             seam_count: 0,
             boundary_count: 0,
+            panes: Vec::new(),
             gl,
         };
         gpu.describe();
@@ -182,12 +196,19 @@ impl Gpu {
     }
 
     fn fill(&self, buffer: &WebGlBuffer, data: &[f32]) {
-        self.gl.bind_buffer(Gl::ARRAY_BUFFER, Some(buffer));
-        self.gl.buffer_data_with_u8_array(
-            Gl::ARRAY_BUFFER,
-            bytemuck::cast_slice(data),
-            Gl::DYNAMIC_DRAW,
-        );
+        fill(&self.gl, buffer, data);
+    }
+
+    /// Uploads the map of one of those shown side by side.
+    pub fn set_pane(&mut self, index: usize, map: &MapData<'_>) {
+        while self.panes.len() <= index {
+            // Without memory for it the pane stays empty.
+            let Ok(pane) = Pane::new(&self.gl) else {
+                return;
+            };
+            self.panes.push(pane);
+        }
+        self.panes[index].set(&self.gl, map);
     }
 
     /// Uploads a surface: corner positions and normals (three floats a corner), boundary segments.
@@ -248,17 +269,41 @@ impl Gpu {
 
     /// Draws the map into the current viewport, inverted triangles last.
     pub fn draw_map(&self, matrix: Mat4, look: Look) {
+        let own = (&self.triangles, self.painted_corners);
+        self.draw_triangles(own, (&self.outline, self.boundary_count), matrix, look);
+    }
+
+    /// Draws one of the maps shown side by side.
+    pub fn draw_pane(&self, index: usize, matrix: Mat4, look: Look) {
+        if let Some(pane) = self.panes.get(index) {
+            let triangles = (&pane.triangles, pane.painted_corners);
+            self.draw_triangles(
+                triangles,
+                (&pane.outline, pane.boundary_count),
+                matrix,
+                look,
+            );
+        }
+    }
+
+    fn draw_triangles(
+        &self,
+        triangles: (&WebGlVertexArrayObject, i32),
+        outline: (&WebGlVertexArrayObject, i32),
+        matrix: Mat4,
+        look: Look,
+    ) {
         let gl = &self.gl;
         gl.disable(Gl::DEPTH_TEST);
         self.begin(&self.map, matrix, look);
-        gl.bind_vertex_array(Some(&self.triangles));
-        gl.draw_elements_with_i32(Gl::TRIANGLES, self.painted_corners, Gl::UNSIGNED_INT, 0);
+        gl.bind_vertex_array(Some(triangles.0));
+        gl.draw_elements_with_i32(Gl::TRIANGLES, triangles.1, Gl::UNSIGNED_INT, 0);
         let edge = if look.theme.dark {
             look.theme.ink
         } else {
             look.theme.outline
         };
-        self.lines(&self.outline, 0, self.boundary_count, matrix, edge, 0.8);
+        self.lines(outline.0, 0, outline.1, matrix, edge, 0.8);
         self.end();
     }
 

@@ -1,15 +1,17 @@
 //! Energy, worst distortion and inverted elements against iteration or time, on a log scale; the worst
 //! stretch of a solid on a log scale of its own, at the right.
 
+mod inversions;
 mod names;
+pub(super) mod switch;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
 use super::bench::{Bench, Event, PlotHeight};
 use super::style;
-use crate::colour::{CurveStyle, VERMILION, curve_style};
+use crate::colour::{CurveStyle, curve_style};
 use crate::history::Record;
-use crate::scale::{LogAxis, linear_ticks, number, power_of_ten};
+use crate::scale::{LogAxis, linear_ticks, number, power_of_ten, time_tick};
 use crate::words::energy_caption;
 
 /// The least relative gap that is drawn.
@@ -18,22 +20,29 @@ const LEAST_GAP: f64 = 1e-12;
 /// Energies of a solid below this part of the greatest are drawn at the bottom.
 const LEAST_OF_MOST: f64 = 1e-9;
 
-struct Frame {
-    area: Rect,
-    axis: LogAxis,
-    end: f64,
-    seconds: bool,
-    gap: Option<f64>,
-    floor: f32,
+/// Where things stand in a plot.
+pub(super) struct Frame {
+    /// Inside the axes.
+    pub area: Rect,
+    /// The height.
+    pub axis: LogAxis,
+    /// Where the width ends.
+    pub end: f64,
+    /// Whether the width is seconds.
+    pub seconds: bool,
+    /// The energy from which gaps count, where gaps are plotted.
+    pub gap: Option<f64>,
+    /// Room below the axis for what is zero.
+    pub floor: f32,
     /// Where the axis of the worst stretch ends, where it has one of its own; it begins at 1.
-    stretch: Option<f64>,
+    pub stretch: Option<f64>,
 }
 
 /// The ends an axis of stretches may have; their square roots are round, too.
 const STRETCH_ENDS: [f64; 7] = [1.21, 1.44, 2.25, 4.0, 9.0, 25.0, 100.0];
 
 impl Frame {
-    fn x(&self, record: &Record) -> f32 {
+    pub fn x(&self, record: &Record) -> f32 {
         let value = if self.seconds {
             record.seconds
         } else {
@@ -42,7 +51,7 @@ impl Frame {
         self.area.left() + self.area.width() * (value / self.end).clamp(0.0, 1.0) as f32
     }
 
-    fn y(&self, value: f64) -> Option<f32> {
+    pub fn y(&self, value: f64) -> Option<f32> {
         self.axis
             .position(value)
             .map(|t| self.area.bottom() - self.floor - t * (self.area.height() - self.floor))
@@ -71,7 +80,11 @@ impl Frame {
     }
 
     /// A curve of the records, at most one point a pixel (the worst of them), broken where undefined.
-    fn curve(&self, records: &[Record], height: impl Fn(&Record) -> Option<f32>) -> Vec<Vec<Pos2>> {
+    pub fn curve(
+        &self,
+        records: &[Record],
+        height: impl Fn(&Record) -> Option<f32>,
+    ) -> Vec<Vec<Pos2>> {
         let mut pieces: Vec<Vec<Pos2>> = vec![Vec::new()];
         for record in records {
             let point = height(record).map(|y| pos2(self.x(record), y));
@@ -140,7 +153,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         if let Some(p) = worst.iter().rev().find_map(|piece| piece.last()) {
             ends.push((p.y, bench.nouns().worst, quiet));
         }
-        inverted(&painter, &frame, records);
+        inversions::steps(&painter, &frame, records);
         if let Some(last) = records.last() {
             let y = frame.y(f64::from(last.inverted)).unwrap_or(area.bottom());
             ends.push((y, "inverted", style::colour(theme.warn)));
@@ -169,6 +182,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     } else {
         names::of_methods(&painter, &frame, bench);
     }
+    let y = |r: &Record| frame.energy(r).and_then(|v| frame.y(v));
+    switch::mark(&painter, &frame, bench, records, y);
     cursor(ui, rect, &frame, bench);
 }
 
@@ -218,7 +233,13 @@ fn heading(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 }
 
 /// Text that can be clicked; returns its right end and whether it was.
-fn toggle(ui: &mut egui::Ui, bench: &Bench, at: Pos2, text: &str, hint: &str) -> (f32, bool) {
+pub(super) fn toggle(
+    ui: &mut egui::Ui,
+    bench: &Bench,
+    at: Pos2,
+    text: &str,
+    hint: &str,
+) -> (f32, bool) {
     let font = style::regular(style::SMALL * bench.text);
     let galley =
         ui.painter()
@@ -291,7 +312,7 @@ fn frame(bench: &Bench, area: Rect) -> Frame {
     frame
 }
 
-fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
+pub(super) fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
     let (theme, text) = (bench.theme, bench.text);
     let font = style::regular(style::SMALL * text);
     let quiet = style::colour(theme.quiet);
@@ -345,8 +366,8 @@ fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
             [pos2(x, area.bottom()), pos2(x, area.bottom() + 4.0)],
             Stroke::new(1.0, quiet),
         );
-        let name = if frame.seconds && value > 0.0 {
-            format!("{} s", number(value, 2))
+        let name = if frame.seconds {
+            time_tick(value, frame.end)
         } else {
             format!("{value}")
         };
@@ -360,7 +381,7 @@ fn axes(painter: &egui::Painter, frame: &Frame, bench: &Bench) {
     }
 }
 
-fn draw(
+pub(super) fn draw(
     painter: &egui::Painter,
     pieces: &[Vec<Pos2>],
     style: CurveStyle,
@@ -386,37 +407,6 @@ fn draw(
             painter.extend(Shape::dashed_line_with_offset(
                 piece, stroke, &dashes, &gaps, 0.0,
             ));
-        }
-    }
-}
-
-/// The count of inverted elements as a stepped line with a dot at every iterate while they are few.
-fn inverted(painter: &egui::Painter, frame: &Frame, records: &[Record]) {
-    let ink = style::colour(VERMILION);
-    let place = |r: &Record| {
-        pos2(
-            frame.x(r),
-            frame
-                .y(f64::from(r.inverted))
-                .unwrap_or(frame.area.bottom()),
-        )
-    };
-    let mut line: Vec<Pos2> = Vec::new();
-    for record in records {
-        let p = place(record);
-        if let Some(last) = line.last().copied() {
-            if last.y == p.y && line.len() > 1 && line[line.len() - 2].y == p.y {
-                line.pop();
-            } else if last.y != p.y {
-                line.push(pos2(p.x, last.y));
-            }
-        }
-        line.push(p);
-    }
-    painter.add(Shape::line(line, Stroke::new(1.2, ink)));
-    if frame.area.width() / (records.len().max(1) as f32) > 7.0 {
-        for record in records {
-            painter.circle_filled(place(record), 2.4, ink);
         }
     }
 }
