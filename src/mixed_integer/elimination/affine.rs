@@ -1,0 +1,174 @@
+//! x = T y + t: all unknowns from those that are left.
+
+use super::{Elimination, Substitution};
+use crate::mixed_integer::{MixedIntegerError as Error, Problem};
+
+/// The solutions of the constraints, T by rows. What is left keeps the number of the unknown it is (or,
+/// after a unimodular change, replaces).
+#[derive(Debug, Clone)]
+pub struct AffineMap {
+    /// The unknowns that are left, ascending.
+    pub kept: Vec<u32>,
+    /// Where each row begins; length: n + 1.
+    begin: Vec<usize>,
+    /// Place in `kept` and coefficient, ascending.
+    terms: Vec<(u32, f64)>,
+    /// t, length n.
+    pub offset: Vec<f64>,
+}
+
+impl AffineMap {
+    /// Of all unknowns of the problem, for its constants.
+    ///
+    /// # Errors
+    /// `Contradictory`, `Infeasible` (of other constants than the elimination has seen),
+    /// `CoefficientsTooLarge`.
+    pub fn new(problem: &Problem, elimination: &Elimination) -> Result<Self, Error> {
+        let n = problem.unknowns();
+        let mut is_kept = vec![true; n];
+        for substitution in &elimination.substitutions {
+            if substitution.constant.is_some() {
+                is_kept[substitution.variable as usize] = false;
+            }
+        }
+        let kept: Vec<u32> = (0..n as u32).filter(|&i| is_kept[i as usize]).collect();
+        let mut place = vec![u32::MAX; n];
+        for (k, &i) in kept.iter().enumerate() {
+            place[i as usize] = k as u32;
+        }
+        let mut is_integer = vec![false; n];
+        for &i in problem.integers() {
+            is_integer[i as usize] = true;
+        }
+        // rows that are not those of the identity; from the last substitution to the first, whose terms
+        // then are expressed in what is left already
+        let mut expressed: Vec<Option<Vec<(u32, f64)>>> = vec![None; n];
+        let mut sum = Accumulator::new(n);
+        for Substitution {
+            variable,
+            terms,
+            constant,
+        } in elimination.substitutions.iter().rev()
+        {
+            for &(i, a) in terms {
+                match &expressed[i as usize] {
+                    Some(terms) => terms.iter().for_each(|&(k, b)| sum.add(k, a * b)),
+                    None => sum.add(i, a),
+                }
+            }
+            let row = sum.take();
+            if is_integer[*variable as usize]
+                && let Some(large) = row.iter().find(|t| t.1.abs() >= super::integer_row::EXACT)
+            {
+                let row = constant.map_or(large.0, |c| c.0) as usize;
+                return Err(Error::CoefficientsTooLarge { row });
+            }
+            expressed[*variable as usize] = Some(row);
+        }
+        let mut this = Self {
+            kept,
+            begin: vec![0],
+            terms: Vec::with_capacity(n),
+            offset: vec![0.0; n],
+        };
+        for i in 0..n {
+            match &expressed[i] {
+                Some(terms) => {
+                    let placed = terms.iter().map(|&(k, a)| (place[k as usize], a));
+                    this.terms.extend(placed);
+                }
+                None => this.terms.push((place[i], 1.0)),
+            }
+            this.begin.push(this.terms.len());
+        }
+        this.set_constants(elimination, problem.constants())?;
+        Ok(this)
+    }
+
+    /// Sets t for these constants; T does not depend on them.
+    ///
+    /// # Errors
+    /// `Contradictory`, `Infeasible`; t is then unchanged.
+    pub fn set_constants(
+        &mut self,
+        elimination: &Elimination,
+        constants: &[f64],
+    ) -> Result<(), Error> {
+        let constants = elimination.replay(constants)?;
+        self.offset.fill(0.0);
+        for substitution in elimination.substitutions.iter().rev() {
+            let terms = substitution.terms.iter();
+            let sum: f64 = terms.map(|&(i, a)| a * self.offset[i as usize]).sum();
+            let own = substitution
+                .constant
+                .map_or(0.0, |(row, factor)| factor * constants[row as usize]);
+            self.offset[substitution.variable as usize] = sum + own;
+        }
+        Ok(())
+    }
+
+    /// The row of an unknown: places in `kept` and coefficients, ascending.
+    pub fn row(&self, unknown: usize) -> &[(u32, f64)] {
+        &self.terms[self.begin[unknown]..self.begin[unknown + 1]]
+    }
+
+    /// Entries of T.
+    pub fn entries(&self) -> usize {
+        self.terms.len()
+    }
+
+    /// x = T y + t.
+    pub fn apply(&self, y: &[f64], x: &mut [f64]) {
+        for (i, (x, offset)) in x.iter_mut().zip(&self.offset).enumerate() {
+            let terms = self.row(i).iter();
+            *x = offset + terms.map(|&(k, a)| a * y[k as usize]).sum::<f64>();
+        }
+    }
+
+    /// y += Tᵀ g.
+    pub fn add_transposed(&self, g: &[f64], y: &mut [f64]) {
+        for (i, g) in g.iter().enumerate() {
+            for &(k, a) in self.row(i) {
+                y[k as usize] += a * g;
+            }
+        }
+    }
+}
+
+/// A sparse sum.
+struct Accumulator {
+    values: Vec<f64>,
+    is_touched: Vec<bool>,
+    touched: Vec<u32>,
+}
+
+impl Accumulator {
+    fn new(n: usize) -> Self {
+        Self {
+            values: vec![0.0; n],
+            is_touched: vec![false; n],
+            touched: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, index: u32, value: f64) {
+        if !std::mem::replace(&mut self.is_touched[index as usize], true) {
+            self.touched.push(index);
+        }
+        self.values[index as usize] += value;
+    }
+
+    /// The sum without zeros, ascending; it begins anew.
+    fn take(&mut self) -> Vec<(u32, f64)> {
+        self.touched.sort_unstable();
+        let mut out = Vec::with_capacity(self.touched.len());
+        for index in self.touched.drain(..) {
+            let value = std::mem::take(&mut self.values[index as usize]);
+            self.is_touched[index as usize] = false;
+            if value != 0.0 {
+                out.push((index, value));
+            }
+        }
+        out
+    }
+}
