@@ -276,9 +276,21 @@ impl ProblemBuilder {
             .map(|(&row, &column)| (row, column));
         let mut assembly = SymmetricAssembly::new(unknowns, places);
         let (rows, columns, values) = (&self.rows, &self.columns, &self.values);
-        assembly.fill(|t| if rows[t] <= columns[t] { values[t] } else { 0.0 });
+        assembly.fill(|t| {
+            if rows[t] <= columns[t] {
+                values[t]
+            } else {
+                0.0
+            }
+        });
         let upper = assembly.matrix().clone();
-        assembly.fill(|t| if rows[t] >= columns[t] { values[t] } else { 0.0 });
+        assembly.fill(|t| {
+            if rows[t] >= columns[t] {
+                values[t]
+            } else {
+                0.0
+            }
+        });
         let mut matrix = assembly.matrix().clone();
         let diagonal: Vec<f64> = (0..unknowns)
             .map(|j| matrix.values()[matrix.pattern().major_offsets()[j]])

@@ -38,7 +38,12 @@ impl Reduced {
     ) -> Result<Self, Error> {
         let map = AffineMap::new(problem, elimination)?;
         let m = map.kept.len();
-        let is_integer = |k: u32| problem.integers().binary_search(&map.kept[k as usize]).is_ok();
+        let is_integer = |k: u32| {
+            problem
+                .integers()
+                .binary_search(&map.kept[k as usize])
+                .is_ok()
+        };
         let integers: Vec<u32> = (0..m as u32).filter(|&k| is_integer(k)).collect();
         let (places, values) = contributions(problem, &map);
         let order = match integers_last {
@@ -106,10 +111,6 @@ impl Reduced {
     pub fn linear(&self) -> &[f64] {
         &self.linear
     }
-    /// The energy of y = 0.
-    pub fn constant(&self) -> f64 {
-        self.constant
-    }
     /// The order of elimination.
     pub fn order(&self) -> &Order {
         &self.order
@@ -121,10 +122,6 @@ impl Reduced {
     /// The unknown of the problem that a position stands for.
     pub fn unknown(&self, position: u32) -> u32 {
         self.map.kept[self.order.unknowns[position as usize] as usize]
-    }
-    /// The solutions of the constraints.
-    pub fn map(&self) -> &AffineMap {
-        &self.map
     }
 
     /// ½ yᵀÃ y − b̃ᵀy + constant.
@@ -165,7 +162,11 @@ fn contributions(problem: &Problem, map: &AffineMap) -> (Vec<(u32, u32)>, Vec<f6
             }
             for &(q, tj) in map.row(j) {
                 places.push((p, q));
-                values.push(if p == q { 2.0 * a * ti * tj } else { a * ti * tj });
+                values.push(if p == q {
+                    2.0 * a * ti * tj
+                } else {
+                    a * ti * tj
+                });
             }
         }
     }

@@ -272,7 +272,11 @@ impl MixedInteger {
             && let Some(bound) = dense.bound
         {
             // both energies are sums of n terms
-            let size: f64 = x.iter().zip(self.problem.linear()).map(|(x, b)| (x * b).abs()).sum();
+            let size: f64 = x
+                .iter()
+                .zip(self.problem.linear())
+                .map(|(x, b)| (x * b).abs())
+                .sum();
             let size = size + self.report.energy.abs() + self.report.relaxed_energy.abs();
             let rounding = 4.0 * x.len() as f64 * f64::EPSILON * size;
             self.report.lower_bound = Some(self.report.relaxed_energy + bound - rounding);

@@ -132,10 +132,7 @@ impl Problem {
         }
         if let Some(word) = words.next() {
             let shown = String::from_utf8_lossy(&word[..word.len().min(40)]);
-            let what = format!(
-                "\"{}\" behind the end of the problem",
-                shown.escape_debug()
-            );
+            let what = format!("\"{}\" behind the end of the problem", shown.escape_debug());
             return Err(words.error(what));
         }
         builder.build()

@@ -1,5 +1,6 @@
 //! x = T y + t: all unknowns from those that are left.
 
+use super::integer_row::EXACT;
 use super::{Elimination, Substitution};
 use crate::mixed_integer::{MixedIntegerError as Error, Problem};
 
@@ -56,11 +57,9 @@ impl AffineMap {
                     None => sum.add(i, a),
                 }
             }
-            let row = sum.take();
-            if is_integer[*variable as usize]
-                && let Some(large) = row.iter().find(|t| t.1.abs() >= super::integer_row::EXACT)
-            {
-                let row = constant.map_or(large.0, |c| c.0) as usize;
+            let (row, largest) = sum.take();
+            if is_integer[*variable as usize] && largest >= EXACT {
+                let row = constant.map_or(0, |c| c.0) as usize;
                 return Err(Error::CoefficientsTooLarge { row });
             }
             expressed[*variable as usize] = Some(row);
@@ -112,11 +111,6 @@ impl AffineMap {
         &self.terms[self.begin[unknown]..self.begin[unknown + 1]]
     }
 
-    /// Entries of T.
-    pub fn entries(&self) -> usize {
-        self.terms.len()
-    }
-
     /// x = T y + t.
     pub fn apply(&self, y: &[f64], x: &mut [f64]) {
         for (i, (x, offset)) in x.iter_mut().zip(&self.offset).enumerate() {
@@ -140,6 +134,8 @@ struct Accumulator {
     values: Vec<f64>,
     is_touched: Vec<bool>,
     touched: Vec<u32>,
+    /// The largest number that came up.
+    largest: f64,
 }
 
 impl Accumulator {
@@ -148,6 +144,7 @@ impl Accumulator {
             values: vec![0.0; n],
             is_touched: vec![false; n],
             touched: Vec::new(),
+            largest: 0.0,
         }
     }
 
@@ -155,11 +152,13 @@ impl Accumulator {
         if !std::mem::replace(&mut self.is_touched[index as usize], true) {
             self.touched.push(index);
         }
-        self.values[index as usize] += value;
+        let sum = &mut self.values[index as usize];
+        *sum += value;
+        self.largest = self.largest.max(value.abs()).max(sum.abs());
     }
 
-    /// The sum without zeros, ascending; it begins anew.
-    fn take(&mut self) -> Vec<(u32, f64)> {
+    /// The sum without zeros, ascending, and the largest number on the way; it begins anew.
+    fn take(&mut self) -> (Vec<(u32, f64)>, f64) {
         self.touched.sort_unstable();
         let mut out = Vec::with_capacity(self.touched.len());
         for index in self.touched.drain(..) {
@@ -169,6 +168,6 @@ impl Accumulator {
                 out.push((index, value));
             }
         }
-        out
+        (out, std::mem::take(&mut self.largest))
     }
 }

@@ -98,6 +98,10 @@ impl Elimination {
         row: u32,
     ) -> Result<u32, Error> {
         let coefficients: Vec<f64> = rows.terms(row).iter().map(|t| t.1).collect();
+        let too_large = Error::CoefficientsTooLarge { row: row as usize };
+        if coefficients.iter().any(|a| a.abs() >= integer_row::EXACT) {
+            return Err(too_large);
+        }
         let Some((factor, whole)) = integer_row::primitive(&coefficients) else {
             return Err(Error::NotRational { row: row as usize });
         };
@@ -110,6 +114,10 @@ impl Elimination {
                 return Ok(pivot);
             }
             let (variable, quotients) = integer_row::euclid(rows.terms(row));
+            if quotients.is_empty() {
+                // a common divisor has come up, which only inexact integers could do
+                return Err(too_large);
+            }
             rows.substitute(variable, &quotients, queue, row)?;
             let mut terms: Vec<(u32, f64)> = quotients.iter().map(|&(i, q)| (i, -q)).collect();
             terms.push((variable, 1.0));

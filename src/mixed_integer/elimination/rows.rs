@@ -167,8 +167,11 @@ impl Rows {
                 (None, None) => break,
                 (Some(&&(i, x)), Some(&&(j, y))) if i == j => {
                     (a.next(), b.next());
-                    let (value, size) = (x - factor * y, x.abs().max((factor * y).abs()));
-                    if value.abs() <= CANCELLED * size {
+                    let product = factor * y;
+                    let (value, size) = (x - product, x.abs().max(product.abs()));
+                    // integers are exact: only a real cancellation leaves rounding errors
+                    let exact = x.fract() == 0.0 && product.fract() == 0.0 && size < EXACT;
+                    if value.abs() <= if exact { 0.0 } else { CANCELLED * size } {
                         continue;
                     }
                     (i, value)

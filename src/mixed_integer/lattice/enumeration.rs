@@ -17,7 +17,7 @@ pub struct Enumeration {
     center: Vec<f64>,
     /// `sums[i * (k + 1) + j]`: the center of w_i as far as w_j, w_j+1, … move it.
     sums: Vec<f64>,
-    /// The highest level that has changed since the sums of level i were made.
+    /// The highest level, i or above, whose change the sums of level i − 1 have not seen.
     stale: Vec<usize>,
     /// The present choices, their centers, and the step to the next choice.
     w: Vec<f64>,
@@ -96,10 +96,6 @@ impl Enumeration {
     pub fn improvements(&self) -> u32 {
         self.improvements
     }
-    /// Have all better points been excluded?
-    pub fn is_finished(&self) -> bool {
-        self.finished
-    }
 
     /// No point has a squared distance below this, rounding errors apart.
     pub fn bound(&self) -> f64 {
@@ -107,7 +103,9 @@ impl Enumeration {
             return self.best * (1.0 - EQUAL);
         }
         // what is left hangs below the present choice, and below later choices of the levels above
-        let mut bound = self.best.min(self.distance_of(self.level, self.w[self.level]));
+        let mut bound = self
+            .best
+            .min(self.distance_of(self.level, self.w[self.level]));
         for i in self.level + 1..self.k {
             bound = bound.min(self.distance_of(i, self.w[i] + self.step[i]));
         }
@@ -159,7 +157,6 @@ impl Enumeration {
                     break;
                 }
                 self.level = level + 1;
-                self.stale[level] = level + 1;
                 self.advance(level + 1);
             } else if level == 0 {
                 self.best = distance;
@@ -175,5 +172,47 @@ impl Enumeration {
             }
         }
         self.finished
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mixed_integer::search::IntegerForm;
+
+    /// A form whose cells are neither round nor thin, as random as it has to be.
+    fn form(k: usize, seed: u32) -> IntegerForm {
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
+        };
+        let mut factor = vec![0.0; k * k];
+        for i in 0..k {
+            (0..i).for_each(|j| factor[i * k + j] = next());
+            factor[i * k + i] = 0.7 + next();
+        }
+        let center = (0..k).map(|_| 10.0 * next()).collect();
+        IntegerForm { k, factor, center }
+    }
+
+    #[test]
+    fn distances_are_those_of_the_form_however_often_it_is_interrupted() {
+        for seed in 0..60 {
+            let form = form(9, seed);
+            let mut reduction = Reduction::new(&form);
+            assert!(reduction.run(u64::MAX / 2));
+            let mut whole = Enumeration::new(&reduction);
+            assert!(whole.run(u64::MAX));
+            let energy = form.energy(&reduction.integers(whole.best().expect("a point")));
+            assert!((2.0 * energy - whole.best).abs() < 1e-9, "{seed}");
+            let mut parts = Enumeration::new(&reduction);
+            let mut bound = 0.0;
+            while !parts.run(1) {
+                assert!(parts.bound() >= bound - 1e-12 && parts.bound() <= whole.best);
+                bound = parts.bound();
+            }
+            assert_eq!((parts.best(), parts.nodes()), (whole.best(), whole.nodes()));
+        }
     }
 }

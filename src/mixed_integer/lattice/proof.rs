@@ -70,7 +70,11 @@ impl Proof {
                 *t += m * y;
             }
         }
-        let moved: f64 = turned.iter().zip(&root).map(|(a, b)| (a + b) * (a + b)).sum();
+        let moved: f64 = turned
+            .iter()
+            .zip(&root)
+            .map(|(a, b)| (a + b) * (a + b))
+            .sum();
         let norm: f64 = target.iter().map(|y| y * y).sum::<f64>().sqrt();
         let center: f64 = form.center.iter().map(|c| c * c).sum::<f64>().sqrt();
         let largest = r.iter().map(|l| l * l).sum::<f64>().sqrt();

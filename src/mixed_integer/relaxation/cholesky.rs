@@ -28,7 +28,12 @@ pub(super) fn solve(
     cholesky.factorize(&masked)?;
     for _ in 0..passes {
         let free = |(r, fixed): (&f64, &bool)| if *fixed { 0.0 } else { *r };
-        let mut delta: Vec<f64> = system.residual.iter().zip(&system.fixed).map(free).collect();
+        let mut delta: Vec<f64> = system
+            .residual
+            .iter()
+            .zip(&system.fixed)
+            .map(free)
+            .collect();
         cholesky.solve_in_place(&mut delta, 1);
         let mut residual = vec![0.0; delta.len()];
         system.multiply(&delta, &mut residual);

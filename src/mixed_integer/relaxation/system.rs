@@ -23,7 +23,11 @@ impl System {
         let m = lower.ncols();
         let mut begin = vec![0usize; m + 1];
         let mut diagonal = vec![0.0; m];
-        let off_diagonal = || lower.triplet_iter().filter(|&(i, j, &a)| i != j && a != 0.0);
+        let off_diagonal = || {
+            lower
+                .triplet_iter()
+                .filter(|&(i, j, &a)| i != j && a != 0.0)
+        };
         for (i, j, _) in off_diagonal() {
             begin[i + 1] += 1;
             begin[j + 1] += 1;

@@ -6,6 +6,6 @@ mod nearest;
 mod two_opt;
 
 pub use form::IntegerForm;
-pub use greedy::{ExactGreedy, Fixed};
+pub use greedy::ExactGreedy;
 pub use nearest::{nearest, preference};
-pub use two_opt::{Move, TwoOpt};
+pub use two_opt::TwoOpt;
