@@ -166,7 +166,8 @@ impl Rows {
             let (i, value) = match (a.peek(), b.peek()) {
                 (None, None) => break,
                 (Some(&&(i, x)), Some(&&(j, y))) if i == j => {
-                    (a.next(), b.next());
+                    a.next();
+                    b.next();
                     let product = factor * y;
                     let (value, size) = (x - product, x.abs().max(product.abs()));
                     // integers are exact: only a real cancellation leaves rounding errors
