@@ -84,10 +84,11 @@ export function torus(unknowns, pieces) {
 
 /**
  * A grid with many sharp features: curves of `length` vertices each, along which the value is one integer, the same
- * at all of them; where curves meet, the sum of two is a third, or their difference a constant. Thousands of rows of
- * integers that depend on each other, in no order.
+ * at all of them. At each junction of features the values of `terms` + 1 curves add up, with signs, to a number, which is
+ * said `times` times, for one vertex of each curve or another: thousands of rows of integers that depend on each other,
+ * shuffled.
  */
-export function features(size, length, terms, seed) {
+export function features({ size, length, terms, times, seed }) {
   const next = random(seed);
   const system = new System(size * size);
   grid(system, size);
@@ -104,10 +105,9 @@ export function features(size, length, terms, seed) {
     curve.forEach((vertex, k) => system.row([[vertex, 1], [curve[(k + 1) % curve.length], -1]]));
   }
   const somewhere = (curve) => curve[Math.floor(next() * curve.length)];
-  // where features meet: sums of neighbouring curves' values, said several times over for other vertices of the curves
-  for (let k = terms; k < curves.length; k += 2) {
+  for (let k = terms; k < curves.length; k += terms + 1) {
     const jump = Math.floor(3 * next());
-    for (let again = 0; again < 2 * length; again++) {
+    for (let again = 0; again < times; again++) {
       const others = Array.from({ length: terms }, (_, i) => [somewhere(curves[k - 1 - i]), i % 2 ? 1 : -1]);
       system.row([[somewhere(curves[k]), 1], ...others], jump);
     }

@@ -63,8 +63,9 @@ pub enum MixedIntegerError {
         "constraint row {row} holds integers only, and the ratios of its coefficients are not rational numbers of moderate size"
     )]
     NotRational { row: usize },
-    /// Exact arithmetic on integer coefficients would need more than 53 bits.
-    #[error("constraint row {row}: integer coefficients grow beyond 2^53")]
+    /// Integer coefficients grow so much in elimination that double precision could not hold them exactly, or
+    /// not their squares beside the other entries of the reduced matrix.
+    #[error("constraint row {row}: integer coefficients grow too large in elimination")]
     CoefficientsTooLarge { row: usize },
     /// More integers than the dense methods take.
     #[error(

@@ -10,6 +10,10 @@ use super::{MixedIntegerError as Error, Problem};
 use crate::linalg::{Cholesky, NotPositiveDefinite};
 use crate::optim::{CancelToken, Criterion, Status, Stopwatch};
 
+/// A constraint row that is violated by more, relatively, is not kept: coefficients were so large that
+/// double precision does not carry them.
+const MOST_VIOLATION: f64 = 1e-6;
+
 /// What the integers are found with.
 enum Engine {
     Dense(Box<Dense>),
@@ -146,7 +150,7 @@ impl MixedInteger {
         Ok(())
     }
 
-    /// One step: a rounding, an improvement, a part of the reduction or of the enumeration. Nothing happens
+    /// One step (`Stalled` at the end: double precision does not carry the problem): a rounding, an improvement, a part of the reduction or of the enumeration. Nothing happens
     /// once the status is not `Running`.
     ///
     /// # Errors
@@ -266,8 +270,15 @@ impl MixedInteger {
         }
         self.report.energy = self.problem.energy(x);
         self.report.violation = self.problem.violation(x);
-        self.report.feasible = true;
+        self.report.feasible = self.report.violation <= MOST_VIOLATION;
         self.step.energy = self.report.energy;
+        let (energy, relaxed) = (self.report.energy, self.report.relaxed_energy);
+        // less than the least energy: the relaxed solution is nothing but rounding errors
+        let is_wrong = energy < relaxed - 1e-6 * (energy.abs() + relaxed.abs());
+        if !self.report.feasible || is_wrong {
+            self.step.status = Status::Stalled;
+            return Ok(());
+        }
         if let Engine::Dense(dense) = &self.engine
             && let Some(bound) = dense.bound
         {

@@ -1,8 +1,11 @@
 //! x = T y + t: all unknowns from those that are left.
 
-use super::integer_row::EXACT;
 use super::{Elimination, Substitution};
 use crate::mixed_integer::{MixedIntegerError as Error, Problem};
+
+/// The largest coefficient of an integer in another: the reduced matrix holds its square, beside which the
+/// other entries still have to be something.
+const LARGEST: f64 = (1u64 << 20) as f64;
 
 /// The solutions of the constraints, T by rows. What is left keeps the number of the unknown it is (or,
 /// after a unimodular change, replaces).
@@ -58,7 +61,7 @@ impl AffineMap {
                 }
             }
             let (row, largest) = sum.take();
-            if is_integer[*variable as usize] && largest >= EXACT {
+            if is_integer[*variable as usize] && largest >= LARGEST {
                 let row = constant.map_or(0, |c| c.0) as usize;
                 return Err(Error::CoefficientsTooLarge { row });
             }
