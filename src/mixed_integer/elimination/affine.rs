@@ -1,5 +1,6 @@
 //! x = T y + t: all unknowns from those that are left.
 
+use super::integer_row::EXACT;
 use super::{Elimination, Substitution};
 use crate::mixed_integer::{MixedIntegerError as Error, Problem};
 
@@ -17,6 +18,8 @@ pub struct AffineMap {
     begin: Vec<usize>,
     /// Place in `kept` and coefficient, ascending.
     terms: Vec<(u32, f64)>,
+    /// Which unknowns are integers, length n.
+    is_integer: Vec<bool>,
     /// t, length n.
     pub offset: Vec<f64>,
 }
@@ -72,6 +75,7 @@ impl AffineMap {
             begin: vec![0],
             terms: Vec::with_capacity(n),
             offset: vec![0.0; n],
+            is_integer,
         };
         for i in 0..n {
             match &expressed[i] {
@@ -90,22 +94,31 @@ impl AffineMap {
     /// Sets t for these constants; T does not depend on them.
     ///
     /// # Errors
-    /// `Contradictory`, `Infeasible`; t is then unchanged.
+    /// `Contradictory`, `Infeasible`, `CoefficientsTooLarge`; t is then unchanged.
     pub fn set_constants(
         &mut self,
         elimination: &Elimination,
         constants: &[f64],
     ) -> Result<(), Error> {
         let constants = elimination.replay(constants)?;
-        self.offset.fill(0.0);
+        let mut offset = vec![0.0f64; self.offset.len()];
         for substitution in elimination.substitutions.iter().rev() {
-            let terms = substitution.terms.iter();
-            let sum: f64 = terms.map(|&(i, a)| a * self.offset[i as usize]).sum();
+            let (mut sum, mut largest) = (0.0f64, 0.0f64);
+            for &(i, a) in &substitution.terms {
+                let product = a * offset[i as usize];
+                sum += product;
+                largest = largest.max(product.abs()).max(sum.abs());
+            }
             let own = substitution
                 .constant
                 .map_or(0.0, |(row, factor)| factor * constants[row as usize]);
-            self.offset[substitution.variable as usize] = sum + own;
+            if self.is_integer[substitution.variable as usize] && largest.max(own.abs()) >= EXACT {
+                let row = substitution.constant.map_or(0, |c| c.0) as usize;
+                return Err(Error::CoefficientsTooLarge { row });
+            }
+            offset[substitution.variable as usize] = sum + own;
         }
+        self.offset = offset;
         Ok(())
     }
 

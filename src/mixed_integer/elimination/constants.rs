@@ -55,6 +55,9 @@ impl Constants {
                 let constant = self.values[row];
                 // what rounding can have done to numbers of this size, if that is more
                 let noise = tolerance.max(64.0 * f64::EPSILON * self.magnitude[row]);
+                if noise > 0.1 {
+                    return Err(Error::CoefficientsTooLarge { row });
+                }
                 if (constant - constant.round()).abs() > noise {
                     return Err(Error::Infeasible { row, constant });
                 }
