@@ -98,18 +98,20 @@ struct MiqpReport<'a> {
     /// Everything but reading and writing.
     seconds: f64,
     #[serde(flatten, serialize_with = "snake_keys")]
-    solution: Summary<'a>,
+    solution: serde_json::Value,
     iterations: Vec<Iteration>,
 }
 
-/// What of the library's report stands on top of the report, but for its seconds.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-struct Summary<'a> {
-    gap: Option<f64>,
-    steps_seconds: f64,
-    #[serde(flatten)]
-    report: &'a MixedIntegerReport,
+/// The library's report, whose seconds are those of the steps alone, and the gap that is left.
+fn solution(report: &MixedIntegerReport) -> serde_json::Value {
+    let mut value = serde_json::to_value(report).unwrap_or_default();
+    if let Some(fields) = value.as_object_mut() {
+        fields.remove("seconds");
+        fields.insert("stepsSeconds".into(), report.seconds.into());
+        let gap = report.lower_bound.map(|bound| report.energy - bound);
+        fields.insert("gap".into(), gap.into());
+    }
+    value
 }
 
 /// One step.
@@ -188,11 +190,7 @@ pub fn run(arguments: &Miqp) -> Result<Outcome, Failure> {
             integers: problem.integers().len(),
             read_seconds,
             seconds,
-            solution: Summary {
-                gap: report.lower_bound.map(|bound| report.energy - bound),
-                steps_seconds: report.seconds,
-                report,
-            },
+            solution: solution(report),
             iterations,
         };
         write_report(path, &report)?;
