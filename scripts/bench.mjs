@@ -1,7 +1,8 @@
 // npm run bench: native, wasm and wasm with threads on the same problems in the same run. Surfaces are flattened, also
-// by the peers that are installed (libigl by pip, watlas by npm); solids are deformed.
-// node scripts/bench.mjs [--only surfaces|solids] [--iterations N] [--threads N] [--quick] [--json FILE]
-//   [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000]
+// by the peers that are installed (libigl by pip, watlas by npm); solids are deformed; mixed-integer problems are solved
+// natively only.
+// node scripts/bench.mjs [--only surfaces|solids|miqp] [--iterations N] [--threads N] [--quick] [--json FILE]
+//   [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000] [--systems FOLDER]
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { cpus, tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -23,6 +24,7 @@ const { values } = parseArgs({
     meshes: { type: 'string', default: join(data, 'parameterization') },
     sizes: { type: 'string', default: '20000,100000' },
     solids: { type: 'string', default: join(data, 'quasistatic') },
+    systems: { type: 'string', default: join(data, 'miqp') },
     tetrahedra: { type: 'string', default: '10000' },
   },
 });
@@ -51,30 +53,42 @@ const KINDS = {
     const measured = await measureSolids(all, { folder: values.solids, tetrahedra, quick });
     return { iterations: all.iterations, ...measured, text: solidTables(measured, all) };
   },
+  miqp: async (bench) => {
+    const { measureMiqp, miqpTables } = await import('./bench/miqp.mjs');
+    const measured = measureMiqp(bench, { folder: values.systems, quick });
+    return { ...measured, text: miqpTables(measured) };
+  },
 };
+
+/** Kinds that need neither the package nor a browser. */
+const NATIVE = new Set(['miqp']);
 
 main(async () => {
   const { only } = values;
   if (only !== undefined && !Object.hasOwn(KINDS, only)) throw new Unmet(`--only takes one of ${Object.keys(KINDS).join(', ')}`);
   count('iterations', values.iterations ?? 1);
   const threads = count('threads', values.threads);
-  await installDependencies();
-  await buildPackage();
+  const kinds = only ? [only] : Object.keys(KINDS);
+  const inBrowser = kinds.some((kind) => !NATIVE.has(kind));
+  if (inBrowser) {
+    await installDependencies();
+    await buildPackage();
+  }
   await run('cargo', ['build', '--release', '--features', 'cli', '--bin', 'foldfree'], { label: 'building the native program', estimate: '2 minutes' });
   const native = join(process.env.CARGO_TARGET_DIR ?? join(root, 'target'), 'release', 'foldfree');
-  const server = await serve(root);
-  const browser = await launch();
+  const server = inBrowser ? await serve(root) : undefined;
+  const browser = inBrowser ? await launch() : undefined;
   const work = mkdtempSync(join(tmpdir(), 'foldfree-bench-'));
   const measured = {};
   try {
-    for (const kind of only ? [only] : Object.keys(KINDS)) {
+    for (const kind of kinds) {
       const { text, ...results } = await KINDS[kind]({ native, threads, server, browser, work });
       measured[kind] = results;
       console.log(`\n${text.join('\n\n')}\n`);
     }
   } finally {
-    await browser.close();
-    await server.close();
+    await browser?.close();
+    await server?.close();
     rmSync(work, { recursive: true, force: true });
   }
   if (values.json) writeFileSync(values.json, `${JSON.stringify({ threads, ...measured }, null, 2)}\n`);

@@ -19,6 +19,7 @@ pub mod geometry;
 pub mod linalg;
 pub mod local_global;
 pub mod mesh;
+pub mod mixed_integer;
 pub mod newton;
 pub mod optim;
 mod parallel;

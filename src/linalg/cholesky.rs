@@ -158,6 +158,30 @@ impl Cholesky {
         Ok(())
     }
 
+    /// The reciprocal diagonal of L.
+    pub fn inverse_diagonal(&self) -> &[f64] {
+        &self.inverse_diagonal
+    }
+
+    /// The most entries that a row of L has, and all entries of L.
+    pub fn row_entries(&self) -> (usize, usize) {
+        let mut count = vec![0usize; self.dimension()];
+        self.panels.for_each_entry(0, |row, _, _| count[row] += 1);
+        let widest = count.iter().copied().max().unwrap_or(0);
+        (widest, self.factor_entries())
+    }
+
+    /// The last `k` rows and columns of L, row by row (k×k, zeros above the diagonal): the factor of the
+    /// Schur complement of the unknowns before them.
+    pub fn trailing(&self, k: usize) -> Vec<f64> {
+        let first = self.dimension() - k;
+        let mut dense = vec![0.0; k * k];
+        self.panels.for_each_entry(first, |row, column, place| {
+            dense[(row - first) * k + column - first] = self.values[place];
+        });
+        dense
+    }
+
     /// Solves A X = B in place for `columns` right-hand sides (1, 2 or 3), interleaved: n × columns,
     /// row by row.
     pub fn solve_in_place(&mut self, x: &mut [f64], columns: usize) {

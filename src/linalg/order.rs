@@ -40,6 +40,30 @@ impl Order {
         } else {
             minimum_degree(&graph, &all)
         };
+        Self::in_parts(&graph, &first)
+    }
+
+    /// As [`Self::new`], by minimum degree whatever the graph, and with the `last` unknowns of the highest
+    /// numbers at the end, in their order.
+    pub fn minimum_degree(
+        n: usize,
+        edges: impl Iterator<Item = (u32, u32)> + Clone,
+        last: usize,
+    ) -> Self {
+        let before = n - last;
+        let graph = Graph::new(before, edges);
+        let all: Vec<u32> = (0..before as u32).collect();
+        let mut order = Self::in_parts(&graph, &minimum_degree(&graph, &all));
+        order.unknowns.extend(before as u32..n as u32);
+        if let Some(end) = order.levels.last_mut().and_then(|parts| parts.last_mut()) {
+            *end = n;
+        }
+        order
+    }
+
+    /// The order `first` of a graph, split into independent parts.
+    fn in_parts(graph: &Graph, first: &[u32]) -> Self {
+        let n = first.len();
         let mut place = vec![0u32; n];
         for (k, &v) in first.iter().enumerate() {
             place[v as usize] = k as u32;

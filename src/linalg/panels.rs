@@ -184,6 +184,38 @@ impl Panels {
         map
     }
 
+    /// Calls `each(row, column, place in the values)` for every entry of L in the columns from `first` on.
+    pub fn for_each_entry(&self, first: usize, mut each: impl FnMut(usize, usize, usize)) {
+        let begin = self
+            .panels
+            .partition_point(|p| ((p.first + p.width) as usize) <= first);
+        for panel in &self.panels[begin..] {
+            let columns = panel.first as usize..(panel.first + panel.width) as usize;
+            let mut place = panel.values as usize;
+            let mut found = |row, column, place| {
+                if column >= first {
+                    each(row, column, place);
+                }
+            };
+            for j in columns.clone() {
+                for i in j..columns.end {
+                    found(i, j, place);
+                    place += 1;
+                }
+            }
+            for four in &self.rows[panel.rows()] {
+                for j in columns.clone() {
+                    for k in 0..ROWS {
+                        if k == 0 || four[k] != four[k - 1] {
+                            found(four[k] as usize, j, place);
+                        }
+                        place += 1;
+                    }
+                }
+            }
+        }
+    }
+
     /// Where the diagonal is in the values.
     pub fn diagonal(&self) -> Vec<u32> {
         let of_panel = |panel: &Panel| {

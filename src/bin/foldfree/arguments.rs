@@ -1,5 +1,6 @@
 //! The arguments, as a person types them.
 
+use crate::miqp::Miqp;
 use crate::relaxation::Relaxation;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
@@ -27,6 +28,8 @@ pub enum Command {
     Deform(Deform),
     /// Let a cloth come to rest under its weight.
     Cloth(Cloth),
+    /// Solve a mixed-integer quadratic problem.
+    Miqp(Miqp),
     /// Check a map exactly: folds, overlaps, distortion.
     Check(Check),
     /// Make a sample mesh.

@@ -1,6 +1,6 @@
-//! The command line: flatten a mesh, check a map, make a sample mesh.
+//! The command line: flatten a mesh, deform a body, solve a mixed-integer problem, check a map, make a sample mesh.
 //!
-//! Exit code 0: done (`parameterize`, `deform`, `cloth`: converged; `check`: nothing folds); 2: not (ran out of
+//! Exit code 0: done (`parameterize`, `deform`, `cloth`, `miqp`: converged; `check`: nothing folds); 2: not (ran out of
 //! iterations; the map folds); 1: an error, in one line on stderr.
 
 mod arguments;
@@ -11,6 +11,7 @@ mod failure;
 mod files;
 mod generate;
 mod handles;
+mod miqp;
 mod parameterize;
 mod progress;
 mod reference;
@@ -57,6 +58,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Command::Parameterize(options) => parameterize::run(options),
         Command::Deform(options) => deform::run(options),
         Command::Cloth(options) => cloth::run(options),
+        Command::Miqp(options) => miqp::run(options),
         Command::Check(options) => check::run(options),
         Command::Generate(options) => generate::run(options),
     }

@@ -160,7 +160,10 @@ pub fn to_json(report: &impl Serialize) -> Result<Vec<u8>, Failure> {
 }
 
 /// Serializes a type of the library, whose keys are camelCase, with snake_case keys.
-fn snake_keys<T: Serialize, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+pub fn snake_keys<T: Serialize, S: Serializer>(
+    value: &T,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     let value = serde_json::to_value(value).map_err(serde::ser::Error::custom)?;
     snake(value).serialize(serializer)
 }
