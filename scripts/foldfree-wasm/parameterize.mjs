@@ -3,17 +3,28 @@ import { flag, given, number, quiet, text, whole } from './arguments.mjs';
 import { core, program } from './core.mjs';
 import { Failure, of } from './failure.mjs';
 import { checkWritable, readMesh, write } from './files.mjs';
+import { readTargets } from './handles.mjs';
 import { iterationOf, sayer, timed, writeReport } from './report.mjs';
 
 export const options = {
   method: text, energy: text, start: text, iterations: text, tolerance: text, threads: text, seed: text, out: text,
   report: text, quiet, 'no-cut': flag, 'no-rotation-aware': flag, 'no-reweighting': flag,
+  landmarks: text, hard: flag, 'landmark-stiffness': text,
 };
 
 function methodOf({ method = 'wrapd', 'no-rotation-aware': linear, 'no-reweighting': fixed }) {
   if (!linear && !fixed) return method;
   if (method !== 'wrapd') throw new Failure('--no-rotation-aware and --no-reweighting go with --method wrapd');
   return linear ? (fixed ? 'admm-pd' : 'w-admm') : 'r-admm';
+}
+
+/** Places for vertices of a mesh of so many. */
+function readLandmarks({ landmarks: path, hard = false }, vertices) {
+  if (path === undefined) return [];
+  return readTargets(path, vertices).map(({ vertex, position: [u, v, z] }) => {
+    if (z !== 0) throw new Failure(`${path}: vertex ${vertex}: a place in the plane has two coordinates`);
+    return { vertex, uv: [u, v], hard };
+  });
 }
 
 /** Reads, flattens, writes, reports. */
@@ -29,11 +40,14 @@ export function run(input, values) {
       maxIterations: whole('iterations', values.iterations),
       tolerance: number('tolerance', values.tolerance),
       seed: whole('seed', values.seed),
+      landmarkStiffness: number('landmark-stiffness', values['landmark-stiffness']),
     }),
   };
+  if (values.hard && values.landmarks === undefined) throw new Failure('--hard goes with --landmarks');
   checkWritable(values.out, values.report);
   const [mesh, readSeconds] = timed(() => readMesh(input));
-  const solver = of(input, () => core.parameterize(mesh, settings));
+  const landmarks = readLandmarks(values, mesh.positions.length / 3);
+  const solver = of(input, () => core.parameterize(mesh, { ...settings, landmarks }));
   const notes = [...mesh.notes, ...solver.notes];
   const say = sayer(values.quiet);
   notes.forEach(say);

@@ -1,7 +1,7 @@
 // The synchronous API over one instance of the wasm module. The worker and `foldfree/core` share it.
 import type * as Bindings from './single/foldfree.js';
 import { FoldfreeError } from './error.js';
-import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needSolidFormat } from './input.js';
+import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needLandmarks, needSolidFormat } from './input.js';
 import { CoreDeformation, CoreSolid } from './solid-engine.js';
 import { guard } from './guard.js';
 import {
@@ -176,8 +176,10 @@ export class Core {
 
   /** Validates, cuts, computes the start and builds the solver: all that comes before the first step. */
   parameterize(mesh: CoreMesh, options: ParameterizeOptions & { frames?: FramePrecision } = {}): CoreSolver {
-    const { frames = 'f64', ...rest } = options;
-    return guard(() => new CoreSolver(new this.#bindings.WasmParameterization(mesh.handle, rest), frames));
+    const { frames = 'f64', landmarks: given, ...rest } = options;
+    const { vertices, places, hard } = needLandmarks(given ?? []);
+    const { WasmParameterization } = this.#bindings;
+    return guard(() => new CoreSolver(new WasmParameterization(mesh.handle, rest, vertices, places, hard), frames));
   }
 
   /**

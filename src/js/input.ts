@@ -1,7 +1,7 @@
 // What people hand in as a mesh.
 import { FoldfreeError } from './error.js';
 import type {
-  Handles, MeshArrays, MeshData, MeshFormat, MeshInfo, SolidArrays, SolidData, SolidFormat, Targets,
+  Handles, Landmark, MeshArrays, MeshData, MeshFormat, MeshInfo, SolidArrays, SolidData, SolidFormat, Targets,
 } from './types.js';
 
 /** Arrays, rather than a file's bytes or text? Anything else is an error. */
@@ -45,6 +45,24 @@ export function needHandles({ pins = [], start, targets }: Handles): { pins: Uin
     pins: Uint32Array.from(pins),
     ...(start && { start }),
     targets: needTargets(targets ?? { vertices: new Uint32Array(), positions: new Float64Array() }),
+  };
+}
+
+/** Checks the kinds of landmarks, and takes them apart. */
+export function needLandmarks(landmarks: readonly Landmark[]): { vertices: Uint32Array; places: Float64Array; hard: Uint8Array } {
+  const whole = (v: unknown) => Number.isInteger(v) && (v as number) >= 0 && (v as number) < 2 ** 32;
+  const number = (x: unknown) => typeof x === 'number';
+  if (!Array.isArray(landmarks)) {
+    throw new FoldfreeError('invalid-argument', 'landmarks: an array of { vertex, uv: [u, v], hard } is needed');
+  }
+  landmarks.forEach((landmark: Landmark, i) => {
+    const fits = whole(landmark?.vertex) && Array.isArray(landmark.uv) && landmark.uv.length === 2 && landmark.uv.every(number);
+    if (!fits) throw new FoldfreeError('invalid-argument', `landmarks: number ${i} is not { vertex, uv: [u, v], hard }`);
+  });
+  return {
+    vertices: Uint32Array.from(landmarks, ({ vertex }) => vertex),
+    places: Float64Array.from(landmarks.flatMap(({ uv }) => [...uv])),
+    hard: Uint8Array.from(landmarks, ({ hard }) => (hard ? 1 : 0)),
   };
 }
 

@@ -11,7 +11,20 @@ export type {
 } from './single/foldfree.js';
 
 /** Options of `parameterize`; what is left out has the paper's value. */
-export type ParameterizeOptions = ParameterizationOptions;
+export interface ParameterizeOptions extends ParameterizationOptions {
+  /** Places for some vertices, each at most once. */
+  landmarks?: readonly Landmark[];
+}
+
+/** A vertex and where its image is to be. */
+export interface Landmark {
+  /** The vertex, as the mesh numbers them; not one on a seam. */
+  vertex: number;
+  /** Where to, in the units of the mesh. */
+  uv: readonly [number, number];
+  /** Held there, instead of pulled (with `landmarkStiffness`). */
+  hard?: boolean;
+}
 
 /** File formats that can be read. */
 export type MeshFormat = 'obj' | 'off' | 'ply' | 'stl' | 'mesh' | 'msh' | 'vtk';

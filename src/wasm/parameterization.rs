@@ -8,7 +8,7 @@ use super::to_js;
 use crate::certificate::{Certificate, CornerMap};
 use crate::mesh::io::{self, CornerTexture};
 use crate::mesh::{SurfaceMesh, prepare};
-use crate::parameterization::Parameterization;
+use crate::parameterization::{Landmark, Parameterization};
 use glam::DVec2;
 use js_sys::{Float32Array, Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
@@ -21,15 +21,21 @@ pub struct WasmParameterization {
 
 #[wasm_bindgen]
 impl WasmParameterization {
-    /// Validates, cuts, computes the start and builds the solver.
+    /// Validates, cuts, computes the start and builds the solver. Landmarks: vertices of the input, two
+    /// coordinates for each, and 1 for those that are held there (0: pulled).
     #[wasm_bindgen(constructor)]
     pub fn new(
         mesh: &WasmMesh,
         #[wasm_bindgen(unchecked_param_type = "ParameterizationOptions | undefined")]
         options: &JsValue,
+        landmark_vertices: &[u32],
+        landmark_places: &[f64],
+        landmark_hard: &[u8],
     ) -> Fallible<WasmParameterization> {
         let options = parameterization_options(options)?;
-        let inner = Parameterization::new(mesh.mesh(), &options).map_err(thrown)?;
+        let landmarks = landmarks(landmark_vertices, landmark_places, landmark_hard)?;
+        let inner = Parameterization::with_landmarks(mesh.mesh(), &options, &landmarks);
+        let inner = inner.map_err(thrown)?;
         Ok(Self { inner })
     }
 
@@ -149,6 +155,24 @@ impl WasmParameterization {
             Some(&texture),
         )
     }
+}
+
+fn landmarks(vertices: &[u32], places: &[f64], hard: &[u8]) -> Fallible<Vec<Landmark>> {
+    if places.len() != 2 * vertices.len() || hard.len() != vertices.len() {
+        let what = "every vertex needs two coordinates, and whether it is held";
+        return Err(invalid_argument("landmarks", what));
+    }
+    let places = places.as_chunks::<2>().0.iter();
+    Ok(vertices
+        .iter()
+        .zip(places)
+        .zip(hard)
+        .map(|((&vertex, &place), &hard)| Landmark {
+            vertex,
+            uv: DVec2::from_array(place),
+            hard: hard != 0,
+        })
+        .collect())
 }
 
 /// Checks a map that came from anywhere: `uv` is n × 2, interleaved, one a vertex of `mesh`.

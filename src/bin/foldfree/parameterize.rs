@@ -116,6 +116,13 @@ pub fn run(arguments: &Parameterize) -> Result<Outcome, Failure> {
 
 fn read_landmarks(path: &Path, vertices: usize, hard: bool) -> Result<Vec<Landmark>, Failure> {
     let targets = handles::read_targets(path, vertices)?;
+    if let Some(solid) = targets.iter().find(|t| t.position.z != 0.0) {
+        let what = format!(
+            "vertex {}: a place in the plane has two coordinates",
+            solid.vertex
+        );
+        return Err(Failure::of_file(path, what));
+    }
     let places = targets.iter().map(|target| Landmark {
         vertex: target.vertex,
         uv: target.position.truncate(),
