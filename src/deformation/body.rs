@@ -75,7 +75,9 @@ pub struct Body<'a> {
 impl Body<'_> {
     /// The solver for an energy.
     pub fn solver<S: Space, E: Energy<S>>(self, energy: E) -> Result<Deformation, Error> {
-        use DeformationMethod::{AdmmPd, Lbfgs, Newton, RAdmm, WAdmm, Wrapd as Both, WrapdNewton};
+        use DeformationMethod::{
+            AdmmPd, Lbfgs, Lim, Newton, RAdmm, WAdmm, Wrapd as Both, WrapdNewton,
+        };
         let (method, tolerance) = (self.method, self.tolerance);
         let max_iterations = self.max_iterations;
         let settings = self.wrapd_options();
@@ -95,6 +97,11 @@ impl Body<'_> {
                 }
                 Newton | WrapdNewton => {
                     let what = "second-order methods are for solids".into();
+                    let option = "method";
+                    return Err(BuildError::InvalidOption { option, what });
+                }
+                Lim => {
+                    let what = "lim is for solids, and triangles in the plane".into();
                     let option = "method";
                     return Err(BuildError::InvalidOption { option, what });
                 }
@@ -168,6 +175,7 @@ impl Body<'_> {
         let solver = new(problem)?;
         Ok(Deformation {
             rest: None,
+            level: 0.0,
             notes: self.notes,
             setup_seconds: self.clock.seconds(),
             supports: self.supports,
