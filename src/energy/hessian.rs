@@ -30,6 +30,19 @@ pub struct Eigensystem<S: Space> {
 impl<S: Space> Eigensystem<S> {
     /// At F (column by column).
     pub fn new<E: Energy<S>>(energy: E, f: S::Gradient<f64>) -> Self {
+        Self::of(
+            f,
+            |sigma| energy.gradient(sigma),
+            |sigma| energy.hessian(sigma),
+        )
+    }
+
+    /// Of any function of the singular values with this gradient and these second derivatives, at F.
+    pub fn of(
+        f: S::Gradient<f64>,
+        gradient: impl Fn(S::Sigma<f64>) -> S::Sigma<f64>,
+        hessian: impl Fn(S::Sigma<f64>) -> [[f64; 3]; 3],
+    ) -> Self {
         const { assert!(S::DIM == S::STRETCHES) };
         let k = S::STRETCHES;
         let (sigma, frame) = S::svd(f);
@@ -37,7 +50,7 @@ impl<S: Space> Eigensystem<S> {
             values: [0.0; MOST],
             modes: [S::Gradient::from_fn(|_| 0.0); MOST],
         };
-        let (values, vectors) = eigen(energy.hessian(sigma), k);
+        let (values, vectors) = eigen(hessian(sigma), k);
         for m in 0..k {
             this.values[m] = values[m];
             this.modes[m] = S::from_svd(S::Sigma::from_fn(|i| vectors[m][i]), frame);
@@ -58,9 +71,9 @@ impl<S: Space> Eigensystem<S> {
                         both * core::f64::consts::FRAC_1_SQRT_2
                     })
                 };
-                this.values[m] = quotient::<S, E>(energy, sigma, (i, j), 1.0);
+                this.values[m] = quotient::<S>(&gradient, &hessian, sigma, (i, j), 1.0);
                 this.modes[m] = mode(-1.0);
-                this.values[m + 1] = quotient::<S, E>(energy, sigma, (i, j), -1.0);
+                this.values[m + 1] = quotient::<S>(&gradient, &hessian, sigma, (i, j), -1.0);
                 this.modes[m + 1] = mode(1.0);
                 m += 2;
             }
@@ -146,15 +159,16 @@ fn factors(m: &[f64], k: usize) -> ([f64; 3], [f64; 3]) {
 const CLOSE: f64 = 1e-5;
 
 /// (ψᵢ + s ψⱼ)/(σᵢ + s σⱼ) for s = ±1.
-fn quotient<S: Space, E: Energy<S>>(
-    energy: E,
+fn quotient<S: Space>(
+    gradient_at: &impl Fn(S::Sigma<f64>) -> S::Sigma<f64>,
+    hessian_at: &impl Fn(S::Sigma<f64>) -> [[f64; 3]; 3],
     sigma: S::Sigma<f64>,
     (i, j): (usize, usize),
     s: f64,
 ) -> f64 {
     let (a, b) = (sigma.at(i), sigma.at(j));
     let numerator = |sigma| {
-        let gradient = energy.gradient(sigma);
+        let gradient = gradient_at(sigma);
         gradient.at(i) + s * gradient.at(j)
     };
     let close = (CLOSE * (a.abs() + b.abs())).max(1e-12);
@@ -170,7 +184,7 @@ fn quotient<S: Space, E: Energy<S>>(
         _ if c == j => -s * middle,
         _ => sigma.at(c),
     });
-    let gradient = energy.gradient(between);
+    let gradient = gradient_at(between);
     let size = gradient.at(i).abs() + gradient.at(j).abs();
     let left = gradient.at(i) + s * gradient.at(j);
     if left.abs() > 1e-8 * size {
@@ -178,6 +192,6 @@ fn quotient<S: Space, E: Energy<S>>(
         let away = if difference < 0.0 { -close } else { close };
         return numerator(sigma) / away;
     }
-    let h = energy.hessian(between);
+    let h = hessian_at(between);
     0.5 * (h[i][i] + h[j][j]) + s * h[i][j]
 }

@@ -1,26 +1,20 @@
 //! Second derivatives of the energy densities with respect to the Jacobian F (column by column).
 
 use super::density::green_strain;
-use super::turning::Turning;
-use super::{LimEnergy, LimHessian};
-use crate::energy::hessian::{MOST, Square};
+use super::LimEnergy;
+use super::barrier::Barrier;
+use super::elements::Law;
+use crate::energy::hessian::{Eigensystem, MOST, Square};
 use crate::space::{Components, Space};
 
-/// ∂²ψ/∂F², or what is taken for it.
-pub fn curvature<S: Space>(energy: LimEnergy, kind: LimHessian, f: S::Gradient<f64>) -> Square {
+/// ∂²ψ/∂F², of energies with rotations in them as if these stayed as they are.
+pub fn frozen<S: Space>(energy: LimEnergy, f: S::Gradient<f64>) -> Square {
     let k = S::STRETCHES;
-    match (energy, kind) {
-        (LimEnergy::Laplacian | LimEnergy::UniformLaplacian, _) => [[0.0; MOST]; MOST],
-        (LimEnergy::Dirichlet, _) | (LimEnergy::Arap, LimHessian::Frozen) => {
-            multiple_of_identity(k, 1.0)
-        }
-        (LimEnergy::Arap, LimHessian::Projected) => {
-            let mut out = multiple_of_identity(k, 1.0);
-            Turning::<S>::new(f).soften(1.0, 2.0, &mut out);
-            out
-        }
-        (LimEnergy::Lscm, _) => similarity_curvature::<S>(kind, f),
-        (LimEnergy::GreenStrain, _) => green_curvature::<S>(f),
+    match energy {
+        LimEnergy::Laplacian | LimEnergy::UniformLaplacian => [[0.0; MOST]; MOST],
+        LimEnergy::Dirichlet | LimEnergy::Arap => multiple_of_identity(k, 1.0),
+        LimEnergy::Lscm => similarity_curvature::<S>(f),
+        LimEnergy::GreenStrain => green_curvature::<S>(f),
     }
 }
 
@@ -60,10 +54,9 @@ fn green_curvature<S: Space>(f: S::Gradient<f64>) -> Square {
     out
 }
 
-/// Of the squared distance to the similarities, ‖F‖² − (Σ σᵢ)²/k: 2 (I − R Rᵀ/k), R as a vector, with frozen
-/// rotations; [turning](Turning) takes 4 mean(σ)/(σᵢ + σⱼ) from it, at most what is there. In the plane that is
-/// all of it: there the energy is quadratic.
-fn similarity_curvature<S: Space>(kind: LimHessian, f: S::Gradient<f64>) -> Square {
+/// Of the squared distance to the similarities: 2 (I − R Rᵀ/k), R as a vector; in the plane, where the energy is
+/// quadratic, its second derivatives.
+fn similarity_curvature<S: Space>(f: S::Gradient<f64>) -> Square {
     let k = S::STRETCHES;
     let mut out = multiple_of_identity(k, 2.0);
     if k == 2 {
@@ -76,15 +69,77 @@ fn similarity_curvature<S: Space>(kind: LimHessian, f: S::Gradient<f64>) -> Squa
         }
         return out;
     }
-    let turning = Turning::<S>::new(f);
+    let (_, frame) = S::svd(f);
+    let rotation = S::from_svd(S::Sigma::from_fn(|_| 1.0), frame);
     for a in 0..k * k {
         for b in 0..k * k {
-            out[a][b] -= 2.0 / k as f64 * turning.rotation.at(a) * turning.rotation.at(b);
+            out[a][b] -= 2.0 / k as f64 * rotation.at(a) * rotation.at(b);
         }
     }
-    if kind == LimHessian::Projected {
-        let mean = turning.sigma.as_slice().iter().sum::<f64>() / k as f64;
-        turning.soften(2.0, 4.0 * mean, &mut out);
-    }
     out
+}
+
+/// The second derivatives of w ψ + β φ(det F), of what is negative in them the part `kept` (Smith, de Goes & Kim 2019).
+/// ½ ‖F‖² stands for Dirichlet, whose linear part has none.
+pub fn projected<S: Space>(
+    law: Law,
+    weight: f64,
+    barrier: &Barrier,
+    f: S::Gradient<f64>,
+    kept: f64,
+) -> Square {
+    let k = S::STRETCHES;
+    let others = |sigma: S::Sigma<f64>, i: usize| -> f64 {
+        let rest = (0..k).filter(|&c| c != i);
+        rest.map(|c| sigma.at(c)).product()
+    };
+    let volume = |sigma: S::Sigma<f64>| -> f64 { sigma.as_slice().iter().product() };
+    let mean = |sigma: S::Sigma<f64>| sigma.as_slice().iter().sum::<f64>() / k as f64;
+    let gradient = |sigma: S::Sigma<f64>| {
+        let slope = match law.beta > 0.0 {
+            true => law.beta * barrier.at(volume(sigma)).slope,
+            false => 0.0,
+        };
+        S::Sigma::from_fn(|i| {
+            let s = sigma.at(i);
+            let own = match law.energy {
+                LimEnergy::Arap => s - 1.0,
+                LimEnergy::Dirichlet => s,
+                LimEnergy::Lscm => 2.0 * (s - mean(sigma)),
+                LimEnergy::GreenStrain => 4.0 * s * (s * s - 1.0),
+                LimEnergy::Laplacian | LimEnergy::UniformLaplacian => 0.0,
+            };
+            weight * own + slope * others(sigma, i)
+        })
+    };
+    let hessian = |sigma: S::Sigma<f64>| {
+        let barrier = barrier.at(volume(sigma));
+        let (slope, curvature) = match law.beta > 0.0 {
+            true => (law.beta * barrier.slope, law.beta * barrier.curvature),
+            false => (0.0, 0.0),
+        };
+        let mut out = [[0.0; 3]; 3];
+        for i in 0..k {
+            for j in 0..k {
+                let mut entry = curvature * others(sigma, i) * others(sigma, j);
+                if i != j {
+                    let third = (0..k).filter(|&c| c != i && c != j);
+                    entry += slope * third.map(|c| sigma.at(c)).product::<f64>();
+                }
+                let same = f64::from(u8::from(i == j));
+                entry += weight
+                    * match law.energy {
+                        LimEnergy::Arap | LimEnergy::Dirichlet => same,
+                        LimEnergy::Lscm => 2.0 * (same - 1.0 / k as f64),
+                        LimEnergy::GreenStrain => {
+                            same * (12.0 * sigma.at(i) * sigma.at(i) - 4.0)
+                        }
+                        LimEnergy::Laplacian | LimEnergy::UniformLaplacian => 0.0,
+                    };
+                out[i][j] = entry;
+            }
+        }
+        out
+    };
+    Eigensystem::<S>::of(f, gradient, hessian).map(|value| value.max(kept * value))
 }

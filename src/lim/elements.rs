@@ -3,7 +3,7 @@
 //! Elements are taken in chunks of a fixed size, which are the unit of parallel work and of ordered summation.
 
 use super::barrier::Barrier;
-use super::curvature::curvature;
+use super::curvature::{frozen, projected};
 use super::density::{density, stress};
 use super::inversion::{add_barrier, determinant};
 use super::{LimEnergy, LimHessian};
@@ -70,8 +70,9 @@ pub trait Elements: Send + Sync {
     fn value(&mut self, law: Law, x: &[f64]) -> Sums;
     /// The same, with singular values and the forces at the corners, (k+1) × d an element.
     fn gradient(&mut self, law: Law, x: &[f64], forces: &mut [f64]) -> Sums;
-    /// The blocks of [`corner_blocks`], element by element.
-    fn hessian(&self, law: Law, x: &[f64], blocks: &mut [f64]);
+    /// The blocks of [`corner_blocks`], element by element, with the part `kept` of what is negative in them
+    /// (all of it with frozen rotations).
+    fn hessian(&self, law: Law, x: &[f64], kept: f64, blocks: &mut [f64]);
     /// The part of a step of `most` directions before the first element meets its wall, at most `most`.
     fn bound(&mut self, x: &[f64], direction: &[f64], most: f64) -> f64;
     /// The corners of each element, by slot.
@@ -279,20 +280,29 @@ impl<S: Space> Elements for Mesh<S> {
         self.total()
     }
 
-    fn hessian(&self, law: Law, x: &[f64], blocks: &mut [f64]) {
+    fn hessian(&self, law: Law, x: &[f64], kept: f64, blocks: &mut [f64]) {
         let k = S::STRETCHES;
         let each = stride(k);
         parallel::for_each_chunk(blocks, CHUNK * each, |chunk, blocks| {
             let elements = self.chunk(chunk);
             for (e, blocks) in elements.zip(blocks.chunks_exact_mut(each)) {
                 let f = self.jacobian(e, x);
-                let mut h = curvature::<S>(law.energy, law.hessian, f);
-                for row in &mut h[..k * k] {
-                    row[..k * k].iter_mut().for_each(|h| *h *= self.weight[e]);
-                }
-                if law.beta > 0.0 {
-                    add_barrier::<S>(&self.barrier[e], law.beta, f, &mut h);
-                }
+                let barrier = &self.barrier[e];
+                let h = match law.hessian {
+                    LimHessian::Projected => {
+                        projected::<S>(law, self.weight[e], barrier, f, kept)
+                    }
+                    LimHessian::Frozen => {
+                        let mut h = frozen::<S>(law.energy, f);
+                        for row in &mut h[..k * k] {
+                            row[..k * k].iter_mut().for_each(|h| *h *= self.weight[e]);
+                        }
+                        if law.beta > 0.0 {
+                            add_barrier::<S>(barrier, law.beta, f, &mut h);
+                        }
+                        h
+                    }
+                };
                 corner_blocks((k, k), &h, &self.hats(e), 1.0, blocks);
             }
         });

@@ -19,6 +19,8 @@ pub mod barrier;
 mod constraints;
 mod curvature;
 mod density;
+#[cfg(test)]
+mod derivative_tests;
 mod elements;
 mod inversion;
 mod laplacian;
@@ -27,7 +29,6 @@ mod options;
 mod problem;
 mod solver;
 mod system;
-mod turning;
 
 pub use options::{LimEnergy, LimHessian, LimOptions};
 pub use problem::LimProblem;

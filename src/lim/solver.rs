@@ -4,7 +4,7 @@ mod build;
 mod handles;
 mod search;
 
-use super::LimOptions;
+use super::{LimHessian, LimOptions};
 use super::constraints::Constraints;
 use super::elements::Sums;
 use super::objective::Objective;
@@ -21,6 +21,12 @@ const MOST_QUIET: u32 = 5;
 
 /// Larger μ that are tried where no step along a direction lowers the objective.
 const MOST_RETRIES: u32 = 5;
+
+/// Parts of what is negative that are tried in an iteration.
+const PARTS: u32 = 2;
+
+/// The least of them.
+const LEAST_PART: f64 = 0.1;
 
 /// Locally injective mappings.
 pub struct Lim {
@@ -48,6 +54,8 @@ pub struct Lim {
     yardstick: Yardstick,
     /// Iterations in a row that changed nearly nothing.
     quiet: u32,
+    /// The part of what is negative in the elements' second derivatives that the next matrix is to keep.
+    kept: f64,
     report: StepReport,
     /// The iteration of the last change of handles, from which the most iterations are counted.
     counted_from: usize,
@@ -160,16 +168,39 @@ impl Lim {
     /// The direction −(∇² + μI)⁻¹ ∇ into `direction`; μ and the slope.
     fn descend(&mut self, at_least: f64, phases: &mut [Phase; 4]) -> (f64, f64) {
         let [local, factor, global, _] = phases;
-        let clock = Stopwatch::start();
-        self.system
-            .assemble(&self.objective, &self.constraints, &self.x);
-        local.count += 1;
-        local.milliseconds += clock.milliseconds();
-        let clock = Stopwatch::start();
         let unit = self.constraints.scale * self.constraints.scale;
-        let (mu, tries) = self.system.factorize(at_least, unit);
-        factor.count += tries;
-        factor.milliseconds += clock.milliseconds();
+        let softened = self.options.hessian == LimHessian::Projected && at_least == 0.0;
+        let mut mu = None;
+        let first = self.kept;
+        for part in 0..=PARTS {
+            // the last is positive semidefinite
+            let kept = match (softened, part) {
+                (false, _) => if self.options.hessian == LimHessian::Projected { 0.0 } else { 1.0 },
+                (true, PARTS) => 0.0,
+                (true, _) => self.kept,
+            };
+            let clock = Stopwatch::start();
+            self.system
+                .assemble(&self.objective, &self.constraints, &self.x, kept);
+            local.count += 1;
+            local.milliseconds += clock.milliseconds();
+            let clock = Stopwatch::start();
+            if softened && part < PARTS {
+                factor.count += 1;
+                if self.system.factorize_as_is() {
+                    mu = Some(0.0);
+                    if part == 0 { self.kept = (2.0 * first).min(1.0); }
+                } else {
+                    self.kept = (0.5 * self.kept).max(LEAST_PART);
+                }
+            } else {
+                let (found, tries) = self.system.factorize(at_least, unit);
+                mu = found;
+                factor.count += tries;
+            }
+            factor.milliseconds += clock.milliseconds();
+            if mu.is_some() || !softened { break; }
+        }
 
         let clock = Stopwatch::start();
         let used = mu.unwrap_or(self.system.most());

@@ -58,10 +58,16 @@ impl LimSystem {
     }
 
     /// Sets the values at x, with rows and columns of the identity where vertices are held.
-    pub fn assemble(&mut self, objective: &Objective, constraints: &Constraints, x: &[f64]) {
+    pub fn assemble(
+        &mut self,
+        objective: &Objective,
+        constraints: &Constraints,
+        x: &[f64],
+        kept: f64,
+    ) {
         objective
             .elements
-            .hessian(objective.law, x, &mut self.blocks);
+            .hessian(objective.law, x, kept, &mut self.blocks);
         constraints.diagonal(&mut self.diagonal);
         let diagonal = &self.diagonal;
         self.matrix.fill(&self.blocks, |v| diagonal[v]);
@@ -71,6 +77,11 @@ impl LimSystem {
     /// The mean diagonal entry of each slot.
     pub fn mean_diagonal(&self, out: &mut [f64]) {
         self.matrix.mean_diagonal(out);
+    }
+
+    /// Factors the matrix as it is; does that succeed?
+    pub fn factorize_as_is(&mut self) -> bool {
+        self.factor.factorize(self.matrix.matrix()).is_ok()
     }
 
     /// Factors the matrix, adding μ I until it is positive definite, at first nothing, unless `at_least` is

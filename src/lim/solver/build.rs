@@ -16,8 +16,9 @@ use crate::space::Space;
 use crate::wrapd::External;
 use crate::wrapd::external::Terms;
 
-/// ε of (3), relative to the least measure of an element at rest.
-const EPSILON: f64 = 1e-5;
+/// ε of (3), relative to the least measure of an element at rest (the paper's text has 1e-5, its authors' code
+/// this).
+const EPSILON: f64 = 1e-4;
 
 /// An energy of an element at rest that a strain of 1.1e-4 has, relative to its stiffness: changes are measured
 /// against it where the energy itself is less (as in `energy`).
@@ -91,7 +92,7 @@ impl Lim {
             held: vec![false; n],
             ..Default::default()
         };
-        system.assemble(&objective, &alone, &rest_positions);
+        system.assemble(&objective, &alone, &rest_positions, 0.0);
         let mut diagonal = vec![0.0; n];
         system.mean_diagonal(&mut diagonal);
         let rest_diagonal = slot.iter().map(|&s| diagonal[s as usize]).collect();
@@ -121,6 +122,7 @@ impl Lim {
                 rounding: 0.0,
             },
             quiet: 0,
+            kept: 1.0,
             report: StepReport::at_start(),
             counted_from: 0,
         };

@@ -10,6 +10,9 @@ const MOST_HALVINGS: u32 = 70;
 /// How much of the way to the first wall a step may go.
 const FRACTION: f64 = 0.9;
 
+/// The longest step.
+const LONGEST: f64 = 8.0;
+
 /// c of Armijo's rule.
 const DECREASE: f64 = 1e-4;
 
@@ -21,30 +24,32 @@ impl Lim {
     }
 
     /// The longest of the steps σ, σ/2, σ/4, …, from 1 or from near the first wall, that lowers the
-    /// objective and inverts nothing; 0 where none does. The positions there are in `trial`; the number of trials.
+    /// objective and inverts nothing, or, if the first of them does, the last of 2σ, 4σ, … that lowers it further;
+    /// 0 where none does. The positions there are in `trial`; the number of trials.
     pub(super) fn search(&mut self, slope: f64) -> (f64, u32) {
         if !(slope < 0.0) {
             return (0.0, 0);
         }
         let before = self.whole(&self.sums, &self.x);
-        let mut sigma = match self.options.barrier {
+        let longest = match self.options.barrier {
             true => {
                 let elements = &mut self.objective.elements;
-                let bound = elements.bound(&self.x, &self.direction, 1.0 / FRACTION);
-                (FRACTION * bound).min(1.0)
+                FRACTION * elements.bound(&self.x, &self.direction, LONGEST / FRACTION)
             }
-            false => 1.0,
+            false => LONGEST,
         };
+        let mut sigma = longest.min(1.0);
         let resolution = self.resolution();
         for trials in 1..=MOST_HALVINGS {
-            self.go(sigma);
-            let sums = self.objective.value(&self.trial);
-            let after = self.whole(&sums, &self.trial);
+            let after = self.try_step(sigma);
             let falls = after <= before + DECREASE * sigma * slope;
             // what is demanded cannot be seen any more
             let same = -sigma * slope < resolution && after <= before;
-            if (falls || same) && after.is_finite() && self.is_injective(&self.trial) {
-                return (sigma, trials);
+            if (falls || same) && self.is_injective(&self.trial) {
+                return match trials {
+                    1 if falls => self.look_on(sigma, after, longest),
+                    _ => (sigma, trials),
+                };
             }
             if -sigma * slope < 1e-3 * resolution {
                 return (0.0, trials);
@@ -52,6 +57,30 @@ impl Lim {
             sigma *= 0.5;
         }
         (0.0, MOST_HALVINGS)
+    }
+
+    /// Doubles a step as long as that lowers the objective: a convex part of the second derivatives is stiffer
+    /// than they are.
+    fn look_on(&mut self, mut sigma: f64, mut value: f64, longest: f64) -> (f64, u32) {
+        let mut trials = 1;
+        while 2.0 * sigma <= longest {
+            trials += 1;
+            let after = self.try_step(2.0 * sigma);
+            if !(after < value && self.is_injective(&self.trial)) {
+                self.go(sigma);
+                break;
+            }
+            sigma *= 2.0;
+            value = after;
+        }
+        (sigma, trials)
+    }
+
+    /// The objective after a step, whose end is in `trial`; infinite or NaN where it has none.
+    fn try_step(&mut self, sigma: f64) -> f64 {
+        self.go(sigma);
+        let sums = self.objective.value(&self.trial);
+        self.whole(&sums, &self.trial)
     }
 
     /// x + σ p into `trial`.
