@@ -29,14 +29,26 @@ fn options(seed: u64) -> LimOptions {
 }
 
 /// Steps to the end, with another target in between.
-fn drag(lim: &mut Lim, seed: u64, targets: [&[(u32, [f64; 3])]; 2], injective: impl Fn(&[f64]) -> bool) {
+fn drag(
+    lim: &mut Lim,
+    seed: u64,
+    targets: [&[(u32, [f64; 3])]; 2],
+    injective: impl Fn(&[f64]) -> bool,
+) {
     for targets in targets {
         lim.retarget(targets, &[]).unwrap();
         let first = lim.report().iteration;
         while lim.status() == Status::Running {
             let report = lim.step().unwrap();
-            assert!(injective(lim.positions()), "seed {seed}, iteration {}", report.iteration);
-            assert!(report.energy.is_finite() && report.iteration <= first + 60, "seed {seed}");
+            assert!(
+                injective(lim.positions()),
+                "seed {seed}, iteration {}",
+                report.iteration
+            );
+            assert!(
+                report.energy.is_finite() && report.iteration <= first + 60,
+                "seed {seed}"
+            );
         }
     }
 }
@@ -45,7 +57,9 @@ fn drag(lim: &mut Lim, seed: u64, targets: [&[(u32, [f64; 3])]; 2], injective: i
 fn anywhere(random: &mut Random, vertices: &[u32], dimension: usize) -> Vec<(u32, [f64; 3])> {
     let mut point = || {
         let mut p = [0.0; 3];
-        p[..dimension].iter_mut().for_each(|x| *x = 0.5 + 3.0 * random.next());
+        p[..dimension]
+            .iter_mut()
+            .for_each(|x| *x = 0.5 + 3.0 * random.next());
         p
     };
     vertices.iter().map(|&v| (v, point())).collect()
@@ -64,7 +78,8 @@ fn nothing_inverts_in_the_plane() {
         let targets = [0; 2].map(|_| anywhere(&mut random, moved, 2));
         drag(&mut lim, seed, [&targets[0], &targets[1]], |p| {
             let at = |v: u32| DVec2::new(p[2 * v as usize], p[2 * v as usize + 1]);
-            let positive = |&[a, b, c]: &[u32; 3]| orientation(at(a), at(b), at(c)) == Ordering::Greater;
+            let positive =
+                |&[a, b, c]: &[u32; 3]| orientation(at(a), at(b), at(c)) == Ordering::Greater;
             mesh.simplices.iter().all(positive)
         });
     }
@@ -93,7 +108,9 @@ fn nothing_inverts_in_space() {
         let mut lim = Lim::new::<Solid>(problem, options(seed)).unwrap();
         let targets = [0; 2].map(|_| {
             let mut targets = anywhere(&mut random, &handles[1..], 3);
-            targets.iter_mut().for_each(|(_, p)| p.iter_mut().for_each(|x| *x *= 2.0));
+            targets
+                .iter_mut()
+                .for_each(|(_, p)| p.iter_mut().for_each(|x| *x *= 2.0));
             targets
         });
         drag(&mut lim, seed, [&targets[0], &targets[1]], |p| {

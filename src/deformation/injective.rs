@@ -88,7 +88,9 @@ fn build<S: Space, const K: usize>(
     let supports = Supports::new(rest, pins, &mut notes)?;
     let coordinates = |positions: &[DVec3]| -> Vec<f64> {
         let points = positions.iter();
-        points.flat_map(|p| p.to_array().into_iter().take(S::DIM)).collect()
+        points
+            .flat_map(|p| p.to_array().into_iter().take(S::DIM))
+            .collect()
     };
     let problem = LimProblem {
         rest: shape,

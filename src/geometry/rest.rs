@@ -120,7 +120,8 @@ impl RestShape {
         for &[a, b, c] in &mesh.simplices {
             let triangle = if turned { [a, c, b] } else { [a, b, c] };
             rest.vertices.extend(triangle);
-            rest.inverse.extend(edges(&triangle).inverse().to_cols_array());
+            rest.inverse
+                .extend(edges(&triangle).inverse().to_cols_array());
         }
         Ok((rest, turned))
     }

@@ -101,7 +101,11 @@ impl Constraints {
             for i in 0..d {
                 let (from, to) = (x[at + i], handle.target[i]);
                 // 1 is exactly at the target
-                handle.sub_target[i] = if part == 1.0 { to } else { from + part * (to - from) };
+                handle.sub_target[i] = if part == 1.0 {
+                    to
+                } else {
+                    from + part * (to - from)
+                };
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Second derivatives of the energy densities with respect to the Jacobian F (column by column).
 
-use super::density::green_strain;
 use super::LimEnergy;
 use super::barrier::Barrier;
+use super::density::green_strain;
 use super::elements::Law;
 use crate::energy::hessian::{Eigensystem, MOST, Square};
 use crate::space::{Components, Space};
@@ -131,9 +131,7 @@ pub fn projected<S: Space>(
                     * match law.energy {
                         LimEnergy::Arap | LimEnergy::Dirichlet => same,
                         LimEnergy::Lscm => 2.0 * (same - 1.0 / k as f64),
-                        LimEnergy::GreenStrain => {
-                            same * (12.0 * sigma.at(i) * sigma.at(i) - 4.0)
-                        }
+                        LimEnergy::GreenStrain => same * (12.0 * sigma.at(i) * sigma.at(i) - 4.0),
                         LimEnergy::Laplacian | LimEnergy::UniformLaplacian => 0.0,
                     };
                 out[i][j] = entry;

@@ -71,10 +71,7 @@ fn identity<S: Space>() -> S::Gradient<f64> {
 
 /// ½ ‖F − G‖² and F − G.
 #[inline(always)]
-fn half_square<S: Space>(
-    f: S::Gradient<f64>,
-    to: S::Gradient<f64>,
-) -> (f64, S::Gradient<f64>) {
+fn half_square<S: Space>(f: S::Gradient<f64>, to: S::Gradient<f64>) -> (f64, S::Gradient<f64>) {
     let away = S::Gradient::from_fn(
         #[inline(always)]
         |c| f.at(c) - to.at(c),

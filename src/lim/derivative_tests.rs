@@ -22,14 +22,14 @@ fn samples<S: Space>() -> Vec<S::Gradient<f64>> {
     let k = S::STRETCHES;
     let mut state = 7u64;
     let mut next = move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     };
     let mut all = Vec::new();
     while all.len() < 60 {
-        let f = S::Gradient::from_fn(|c| {
-            f64::from(u8::from(c / k == c % k)) + 1.4 * next()
-        });
+        let f = S::Gradient::from_fn(|c| f64::from(u8::from(c / k == c % k)) + 1.4 * next());
         if determinant::<S>(f).0 > 0.03 {
             all.push(f);
         }
@@ -67,7 +67,10 @@ fn differences<S: Space>(law: Law, barrier: &Barrier, f: S::Gradient<f64>) -> Sq
 }
 
 fn apart(a: &Square, b: &Square) -> f64 {
-    let size = b.as_flattened().iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+    let size = b
+        .as_flattened()
+        .iter()
+        .fold(1.0, |m: f64, x| m.max(x.abs()));
     let pairs = a.as_flattened().iter().zip(b.as_flattened());
     pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs())) / size
 }
@@ -82,7 +85,10 @@ fn check<S: Space>() {
                 let at = |by: f64| value::<S>(law, &barrier, moved::<S>(f, a, by));
                 let difference = (at(STEP) - at(-STEP)) / (2.0 * STEP);
                 let size = 1.0 + g.as_slice().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-                assert!((difference - g.at(a)).abs() < 1e-6 * size, "{energy:?} {f:?}");
+                assert!(
+                    (difference - g.at(a)).abs() < 1e-6 * size,
+                    "{energy:?} {f:?}"
+                );
             }
             let expected = differences::<S>(law, &barrier, f);
             // all that is negative kept: the second derivatives themselves

@@ -289,9 +289,7 @@ impl<S: Space> Elements for Mesh<S> {
                 let f = self.jacobian(e, x);
                 let barrier = &self.barrier[e];
                 let h = match law.hessian {
-                    LimHessian::Projected => {
-                        projected::<S>(law, self.weight[e], barrier, f, kept)
-                    }
+                    LimHessian::Projected => projected::<S>(law, self.weight[e], barrier, f, kept),
                     LimHessian::Frozen => {
                         let mut h = frozen::<S>(law.energy, f);
                         for row in &mut h[..k * k] {

@@ -53,7 +53,11 @@ fn uniform(rest: &RestShape, vertices: usize) -> Rows {
             rows[v as usize].extend(others.map(|&w| (w, 0.0)));
         }
     }
-    for (v, row) in rows.iter_mut().enumerate().filter(|(_, row)| !row.is_empty()) {
+    for (v, row) in rows
+        .iter_mut()
+        .enumerate()
+        .filter(|(_, row)| !row.is_empty())
+    {
         let part = -(row.len() as f64).recip();
         row.values_mut().for_each(|entry| *entry = part);
         row.insert(v as u32, 1.0);

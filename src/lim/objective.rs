@@ -94,7 +94,10 @@ impl Objective {
 
     fn gather<const D: usize>(&self, gradient: &mut [f64]) {
         let forces = self.forces.as_chunks::<D>().0;
-        let form = self.form.as_ref().map(|form| form.gradient.as_chunks::<D>().0);
+        let form = self
+            .form
+            .as_ref()
+            .map(|form| form.gradient.as_chunks::<D>().0);
         parallel::for_each_chunk(gradient, VERTICES * D, |chunk, out| {
             for (local, g) in out.as_chunks_mut::<D>().0.iter_mut().enumerate() {
                 let v = chunk * VERTICES + local;

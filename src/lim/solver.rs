@@ -4,11 +4,11 @@ mod build;
 mod handles;
 mod search;
 
-use super::{LimHessian, LimOptions};
 use super::constraints::Constraints;
 use super::elements::Sums;
 use super::objective::Objective;
 use super::system::LimSystem;
+use super::{LimHessian, LimOptions};
 use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{
     Criterion, Deformer, Field, Inspection, LimStep, Phase, PhaseKind, SolveError, Solver, Status,
@@ -175,7 +175,13 @@ impl Lim {
         for part in 0..=PARTS {
             // the last is positive semidefinite
             let kept = match (softened, part) {
-                (false, _) => if self.options.hessian == LimHessian::Projected { 0.0 } else { 1.0 },
+                (false, _) => {
+                    if self.options.hessian == LimHessian::Projected {
+                        0.0
+                    } else {
+                        1.0
+                    }
+                }
                 (true, PARTS) => 0.0,
                 (true, _) => self.kept,
             };
@@ -189,7 +195,9 @@ impl Lim {
                 factor.count += 1;
                 if self.system.factorize_as_is() {
                     mu = Some(0.0);
-                    if part == 0 { self.kept = (2.0 * first).min(1.0); }
+                    if part == 0 {
+                        self.kept = (2.0 * first).min(1.0);
+                    }
                 } else {
                     self.kept = (0.5 * self.kept).max(LEAST_PART);
                 }
@@ -199,7 +207,9 @@ impl Lim {
                 factor.count += tries;
             }
             factor.milliseconds += clock.milliseconds();
-            if mu.is_some() || !softened { break; }
+            if mu.is_some() || !softened {
+                break;
+            }
         }
 
         let clock = Stopwatch::start();
@@ -211,10 +221,7 @@ impl Lim {
         match mu {
             Some(_) => self.system.solve(&mut self.direction),
             // gradient descent
-            None => self
-                .direction
-                .iter_mut()
-                .for_each(|p| *p /= used * unit),
+            None => self.direction.iter_mut().for_each(|p| *p /= used * unit),
         }
         global.count += 1;
         global.milliseconds += clock.milliseconds();

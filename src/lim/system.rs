@@ -38,7 +38,9 @@ impl LimSystem {
         let elements = objective.elements.corners().chunks_exact(corners);
         let count = elements.len();
         let pairs: Vec<(u32, u32)> = elements
-            .flat_map(|slots| (0..corners).flat_map(move |u| (0..=u).map(move |v| (slots[u], slots[v]))))
+            .flat_map(|slots| {
+                (0..corners).flat_map(move |u| (0..=u).map(move |v| (slots[u], slots[v])))
+            })
             .collect();
         let slot = &elimination.slot;
         let form = form.iter();

@@ -28,8 +28,7 @@ pub fn corner_blocks(
             let Some(target) = next.next() else { continue };
             for i in 0..d {
                 for j in 0..d {
-                    let sum: f64 =
-                        (0..k).map(|c| hats[u][c] * products[v][c * d + i][j]).sum();
+                    let sum: f64 = (0..k).map(|c| hats[u][c] * products[v][c * d + i][j]).sum();
                     target[i * d + j] = scale * sum;
                 }
             }

@@ -22,7 +22,8 @@ pub fn grid(n: usize) -> SurfaceMesh {
         for column in 0..n - 1 {
             let v = (row * n + column) as u32;
             let above = v + n as u32;
-            mesh.simplices.extend([[v, v + 1, above + 1], [v, above + 1, above]]);
+            mesh.simplices
+                .extend([[v, v + 1, above + 1], [v, above + 1, above]]);
         }
     }
     mesh

@@ -123,7 +123,11 @@ pub struct Deform {
 /// Names of materials, then of energies that only locally injective mappings have.
 fn energies_of_solids() -> Vec<&'static str> {
     let mut names = Material::NAMES.to_vec();
-    names.extend(LimEnergy::NAMES.iter().filter(|n| !Material::NAMES.contains(n)));
+    names.extend(
+        LimEnergy::NAMES
+            .iter()
+            .filter(|n| !Material::NAMES.contains(n)),
+    );
     names
 }
 
@@ -151,7 +155,9 @@ impl Deform {
         let name = self.energy.as_deref().unwrap_or(LimEnergy::NAMES[0]);
         let Some(energy) = LimEnergy::named(name) else {
             let known = LimEnergy::NAMES.join(", ");
-            return Err(format!("--method lim has no energy {name} (it has {known})"));
+            return Err(format!(
+                "--method lim has no energy {name} (it has {known})"
+            ));
         };
         Ok(LimOptions {
             energy,

@@ -55,9 +55,8 @@ fn planar(arguments: &Deform, rest_path: &Path) -> Result<Outcome, Failure> {
         files::format(path)?;
     }
     relaxation.prepare()?;
-    let positions = |path: &Path| -> Result<Vec<DVec3>, Failure> {
-        Ok(files::read_mesh(path)?.mesh.positions)
-    };
+    let positions =
+        |path: &Path| -> Result<Vec<DVec3>, Failure> { Ok(files::read_mesh(path)?.mesh.positions) };
     let file = files::read_mesh(rest_path)?;
     let rest = file.mesh;
     let start = positions(&arguments.init)?;

@@ -34,8 +34,7 @@ impl Lim {
         options.validate()?;
         problem.validate(S::DIM)?;
         if options.barrier
-            && let (inverted, Some(first)) =
-                inverted(S::DIM, &problem.rest.vertices, problem.start)
+            && let (inverted, Some(first)) = inverted(S::DIM, &problem.rest.vertices, problem.start)
         {
             return Err(BuildError::InvertedStart { inverted, first });
         }
@@ -72,7 +71,11 @@ impl Lim {
         };
         let weights = rest.measure.iter().map(weight).collect();
         let mut mesh = Mesh::<S>::new(rest, &slot, weights, Vec::new());
-        mesh.set_barriers(barriers(rest, &mesh.determinants(&x), options.barrier_reach));
+        mesh.set_barriers(barriers(
+            rest,
+            &mesh.determinants(&x),
+            options.barrier_reach,
+        ));
         let quadratic = (!form.is_empty()).then(|| {
             let external = External {
                 stiffness: form.clone(),
@@ -158,9 +161,16 @@ fn barriers(rest: &RestShape, determinants: &[f64], reach: f64) -> Vec<Barrier> 
 fn constraints(problem: &LimProblem, d: usize, scale: f64, slot: &[u32]) -> Constraints {
     let n = slot.len();
     let mut used = vec![false; n];
-    problem.rest.vertices.iter().for_each(|&v| used[v as usize] = true);
+    problem
+        .rest
+        .vertices
+        .iter()
+        .for_each(|&v| used[v as usize] = true);
     let mut is_handle = used.iter().map(|used| !used).collect::<Vec<bool>>();
-    problem.handles.iter().for_each(|&v| is_handle[v as usize] = true);
+    problem
+        .handles
+        .iter()
+        .for_each(|&v| is_handle[v as usize] = true);
     let mut handles: Vec<Handle> = (0..n)
         .filter(|&v| is_handle[v])
         .map(|v| {
