@@ -10,7 +10,11 @@
 //! 3. handles are led the part 1/(1 + μ²) of the way (6): where the matrix is indefinite, all of the way may be
 //!    too far;
 //! 4. the step σ, bounded where the first element would meet its wall, halved until the objective falls and an
-//!    exact predicate says that nothing is inverted.
+//!    exact predicate says that nothing is inverted, or doubled while that lowers it further.
+//!
+//! That is the paper's method, with [`LimHessian::Frozen`]. By default ([`LimHessian::Projected`]) what is negative in the
+//! elements' second derivatives is left out, in part or wholly, instead of being outweighed by μ: handles arrive
+//! in a few iterations, and the end is quadratic.
 //!
 //! A handle that is at its target to 1e-9 of the body's size is put there exactly, and held. All parameters are
 //! those of a body scaled to a measure of 1, so that units do not matter.

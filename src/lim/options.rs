@@ -59,15 +59,16 @@ impl LimEnergy {
     }
 }
 
-/// The second derivatives of energies with rotations in them (ARAP, and LSCM of tetrahedra). Those of the other
-/// energies and of the barrier are exact in any case.
+/// Where the second derivatives of a step come from, and how they are made positive definite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum LimHessian {
-    /// As if the rotations stayed as they are (paper, appendix (13)): constant, and stiffer than the energy is.
+    /// The paper's: of energies with rotations in them (ARAP, and LSCM of tetrahedra) as if these stayed as they are
+    /// (appendix (13)), of all others and of the barrier exact; with μ and sub-steps where that is indefinite.
     Frozen,
-    /// Of the energy itself, element by element without what is negative (Smith, de Goes & Kim 2019).
+    /// Those of energy and barrier with all, a half or nothing of what is negative in them, element by element
+    /// (Smith, de Goes & Kim 2019): the first that is definite. The last always is, so that no μ is needed.
     #[default]
     Projected,
 }

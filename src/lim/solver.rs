@@ -165,53 +165,52 @@ impl Lim {
         1e-14 * (self.whole(&self.sums, &self.x).abs() + self.yardstick.floor)
     }
 
+    /// Sets the values of the matrix, with the part `kept` of what is negative in those of the elements.
+    fn assemble(&mut self, kept: f64, local: &mut Phase) {
+        let clock = Stopwatch::start();
+        self.system
+            .assemble(&self.objective, &self.constraints, &self.x, kept);
+        local.count += 1;
+        local.milliseconds += clock.milliseconds();
+    }
+
+    /// Matrix and factor; μ, or none where the largest does not serve. Unless rotations are frozen, or a μ is
+    /// asked for, the second derivatives are tried with all or a part of what is negative in them, and then
+    /// without, which needs no μ.
+    fn factor(&mut self, at_least: f64, local: &mut Phase, factor: &mut Phase) -> Option<f64> {
+        let is_frozen = self.options.hessian == LimHessian::Frozen;
+        let parts = match is_frozen || at_least > 0.0 {
+            true => 0,
+            false => PARTS,
+        };
+        for part in 0..parts {
+            self.assemble(self.kept, local);
+            let clock = Stopwatch::start();
+            let definite = self.system.factorize_as_is();
+            factor.count += 1;
+            factor.milliseconds += clock.milliseconds();
+            if definite {
+                if part == 0 {
+                    self.kept = (2.0 * self.kept).min(1.0);
+                }
+                return Some(0.0);
+            }
+            self.kept = (0.5 * self.kept).max(LEAST_PART);
+        }
+        self.assemble(if is_frozen { 1.0 } else { 0.0 }, local);
+        let clock = Stopwatch::start();
+        let unit = self.constraints.scale * self.constraints.scale;
+        let (mu, tries) = self.system.factorize(at_least, unit);
+        factor.count += tries;
+        factor.milliseconds += clock.milliseconds();
+        mu
+    }
+
     /// The direction −(∇² + μI)⁻¹ ∇ into `direction`; μ and the slope.
     fn descend(&mut self, at_least: f64, phases: &mut [Phase; 4]) -> (f64, f64) {
         let [local, factor, global, _] = phases;
+        let mu = self.factor(at_least, local, factor);
         let unit = self.constraints.scale * self.constraints.scale;
-        let softened = self.options.hessian == LimHessian::Projected && at_least == 0.0;
-        let mut mu = None;
-        let first = self.kept;
-        for part in 0..=PARTS {
-            // the last is positive semidefinite
-            let kept = match (softened, part) {
-                (false, _) => {
-                    if self.options.hessian == LimHessian::Projected {
-                        0.0
-                    } else {
-                        1.0
-                    }
-                }
-                (true, PARTS) => 0.0,
-                (true, _) => self.kept,
-            };
-            let clock = Stopwatch::start();
-            self.system
-                .assemble(&self.objective, &self.constraints, &self.x, kept);
-            local.count += 1;
-            local.milliseconds += clock.milliseconds();
-            let clock = Stopwatch::start();
-            if softened && part < PARTS {
-                factor.count += 1;
-                if self.system.factorize_as_is() {
-                    mu = Some(0.0);
-                    if part == 0 {
-                        self.kept = (2.0 * first).min(1.0);
-                    }
-                } else {
-                    self.kept = (0.5 * self.kept).max(LEAST_PART);
-                }
-            } else {
-                let (found, tries) = self.system.factorize(at_least, unit);
-                mu = found;
-                factor.count += tries;
-            }
-            factor.milliseconds += clock.milliseconds();
-            if mu.is_some() || !softened {
-                break;
-            }
-        }
-
         let clock = Stopwatch::start();
         let used = mu.unwrap_or(self.system.most());
         self.constraints.set_sub_targets(&self.x, used);
