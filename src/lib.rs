@@ -16,6 +16,7 @@ pub mod embedding;
 pub mod energy;
 mod error;
 pub mod geometry;
+pub mod lim;
 pub mod linalg;
 pub mod local_global;
 pub mod mesh;

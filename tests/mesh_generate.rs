@@ -77,7 +77,7 @@ fn closed_shapes_face_outwards_and_open_ones_upwards() {
         }
         match shape {
             Shape::Torus | Shape::Sphere | Shape::RoundedCube => assert!(volume > 1.0, "{shape:?}"),
-            Shape::Sheet | Shape::RoundSheet => {
+            Shape::Sheet | Shape::RoundSheet | Shape::Grid => {
                 assert!(mesh.positions.iter().all(|p| p.z == 0.0));
                 assert!(up > 0.0);
             }

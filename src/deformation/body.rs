@@ -72,10 +72,15 @@ pub struct Body<'a> {
     pub clock: Stopwatch,
 }
 
+/// From a problem to its solver.
+type NewSolver<'a> = dyn Fn(Problem) -> Result<Box<dyn Deformer>, BuildError> + 'a;
+
 impl Body<'_> {
     /// The solver for an energy.
     pub fn solver<S: Space, E: Energy<S>>(self, energy: E) -> Result<Deformation, Error> {
-        use DeformationMethod::{AdmmPd, Lbfgs, Newton, RAdmm, WAdmm, Wrapd as Both, WrapdNewton};
+        use DeformationMethod::{
+            AdmmPd, Lbfgs, Lim, Newton, RAdmm, WAdmm, Wrapd as Both, WrapdNewton,
+        };
         let (method, tolerance) = (self.method, self.tolerance);
         let max_iterations = self.max_iterations;
         let settings = self.wrapd_options();
@@ -95,6 +100,11 @@ impl Body<'_> {
                 }
                 Newton | WrapdNewton => {
                     let what = "second-order methods are for solids".into();
+                    let option = "method";
+                    return Err(BuildError::InvalidOption { option, what });
+                }
+                Lim => {
+                    let what = "lim is for solids, and triangles in the plane".into();
                     let option = "method";
                     return Err(BuildError::InvalidOption { option, what });
                 }
@@ -137,11 +147,7 @@ impl Body<'_> {
     }
 
     /// What does not depend on the energy's type.
-    fn build(
-        mut self,
-        rest_stiffness: f64,
-        new: &dyn Fn(Problem) -> Result<Box<dyn Deformer>, BuildError>,
-    ) -> Result<Deformation, Error> {
+    fn build(mut self, rest_stiffness: f64, new: &NewSolver) -> Result<Deformation, Error> {
         let spring_stiffness = self.spring_stiffness(rest_stiffness);
         let fits = |k: f64| k > 0.0 && k.is_finite();
         let used = self.shape.vertices.iter();
@@ -168,6 +174,7 @@ impl Body<'_> {
         let solver = new(problem)?;
         Ok(Deformation {
             rest: None,
+            level: 0.0,
             notes: self.notes,
             setup_seconds: self.clock.seconds(),
             supports: self.supports,

@@ -97,6 +97,9 @@ impl ClothOptions {
         ) {
             return wrong("method", "second-order methods are for solids");
         }
+        if self.method == DeformationMethod::Lim {
+            return wrong("method", "lim is for solids, and triangles in the plane");
+        }
         self.energy().map(|_| ())
     }
 

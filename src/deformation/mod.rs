@@ -2,6 +2,7 @@
 
 mod body;
 mod cloth;
+mod injective;
 mod options;
 mod problem;
 mod supports;

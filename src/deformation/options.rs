@@ -1,5 +1,6 @@
 //! What a deformation is to be like.
 
+use crate::lim::{LimEnergy, LimOptions};
 use crate::optim::BuildError;
 
 /// The elastic energy of a solid.
@@ -94,6 +95,9 @@ pub enum DeformationMethod {
     /// WRAPD to its first iterate without inverted elements, then Newton's method. Solids only.
     #[serde(rename = "wrapd+newton")]
     WrapdNewton,
+    /// Locally injective mappings (Schüller et al. 2013). Solids only, ARAP and Dirichlet; with its own energies and
+    /// options, and of triangles in the plane: [`super::Deformation::locally_injective`].
+    Lim,
 }
 
 /// Options of [`super::Deformation`]. `Default` is the paper's choice for quasi-statics (§6.1, §7.1).
@@ -142,5 +146,28 @@ impl DeformationOptions {
             });
         }
         Ok(())
+    }
+
+    /// The options of locally injective mappings.
+    pub(super) fn locally_injective(&self) -> Result<LimOptions, BuildError> {
+        let energy = match self.material {
+            Material::Arap => LimEnergy::Arap,
+            Material::Dirichlet => LimEnergy::Dirichlet,
+            _ => {
+                let names = LimEnergy::NAMES.join(", ");
+                let what = format!("the energies of lim are {names}");
+                return Err(BuildError::InvalidOption {
+                    option: "energy",
+                    what,
+                });
+            }
+        };
+        Ok(LimOptions {
+            energy,
+            target_stiffness: self.target_stiffness,
+            tolerance: self.tolerance,
+            max_iterations: self.max_iterations,
+            ..Default::default()
+        })
     }
 }

@@ -1,7 +1,7 @@
 //! A deformation in progress, of a solid or of a cloth, and how one of a solid is made.
 
 use super::body::{Body, check};
-use super::{DeformationOptions, Material, Supports, Target};
+use super::{DeformationMethod, DeformationOptions, Material, Supports, Target};
 use crate::Error;
 use crate::certificate::SolidCertificate;
 use crate::energy::{
@@ -17,6 +17,8 @@ use glam::DVec3;
 pub struct Deformation {
     /// The solid at rest; none for a cloth.
     pub(super) rest: Option<SolidMesh>,
+    /// z, where the solver knows the plane only.
+    pub(super) level: f64,
     pub(super) notes: Vec<String>,
     pub(super) setup_seconds: f64,
     pub(super) supports: Supports,
@@ -56,6 +58,10 @@ impl Deformation {
     ) -> Result<Self, Error> {
         let clock = Stopwatch::start();
         options.validate()?;
+        if options.method == DeformationMethod::Lim {
+            let options = options.locally_injective()?;
+            return Self::locally_injective(rest, start, pins, targets, &options);
+        }
         let mut notes = Vec::new();
         check(rest, start)?;
         let (shape, turned) = RestShape::of_solid(rest)?;
@@ -110,6 +116,21 @@ impl Deformation {
         self.solver.field(field)
     }
 
+    /// Where the last step led handles that have not arrived yet, of a method that leads them step by step.
+    pub fn sub_targets(&self) -> Vec<Target> {
+        let targets = self.solver.sub_targets().into_iter();
+        let in_plane = self.solver.dimension() == 2;
+        targets
+            .map(|(vertex, mut point)| {
+                if in_plane {
+                    point[2] = self.level;
+                }
+                let position = DVec3::from_array(point);
+                Target { vertex, position }
+            })
+            .collect()
+    }
+
     /// What was mended or chosen, in words.
     pub fn notes(&self) -> &[String] {
         &self.notes
@@ -131,11 +152,20 @@ impl Deformation {
     }
     /// Positions, one a vertex, in the input's units.
     pub fn positions(&self) -> Vec<DVec3> {
-        let positions = self.solver.positions().as_chunks::<3>().0;
-        positions.iter().map(|&p| DVec3::from_array(p)).collect()
+        let positions = self.solver.positions();
+        match self.solver.dimension() {
+            2 => {
+                let points = positions.as_chunks::<2>().0.iter();
+                points.map(|p| DVec3::new(p[0], p[1], self.level)).collect()
+            }
+            _ => {
+                let points = positions.as_chunks::<3>().0.iter();
+                points.map(|&p| DVec3::from_array(p)).collect()
+            }
+        }
     }
     /// What is known for certain of the newest iterate of a solid, as a map of its rest shape; `None` for
-    /// a cloth, which has no inside.
+    /// triangles: a cloth has no inside.
     pub fn certificate(&self) -> Option<SolidCertificate> {
         let rest = self.rest.as_ref()?;
         Some(SolidCertificate::of_solid(rest, &self.positions()))

@@ -19,6 +19,12 @@ pub const MOST: usize = 9;
 /// are used; the others are 0.
 pub type Square = [[f64; MOST]; MOST];
 
+/// A gradient in the singular values,
+pub type Gradient<'a, S> = dyn Fn(<S as Space>::Sigma<f64>) -> <S as Space>::Sigma<f64> + 'a;
+
+/// and second derivatives.
+pub type Hessian<'a, S> = dyn Fn(<S as Space>::Sigma<f64>) -> [[f64; 3]; 3] + 'a;
+
 /// Eigenvalues and eigenmatrices of ∂²ψ/∂F²; spaces of d = k only.
 #[derive(Debug, Clone, Copy)]
 pub struct Eigensystem<S: Space> {
@@ -27,30 +33,18 @@ pub struct Eigensystem<S: Space> {
     modes: [S::Gradient<f64>; MOST],
 }
 
-/// The derivatives of an energy in the singular values, behind a pointer: what follows is compiled once a
-/// dimension, not once an energy.
-trait Derivatives<S: Space> {
-    fn first(&self, sigma: S::Sigma<f64>) -> S::Sigma<f64>;
-    fn second(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3];
-}
-
-impl<S: Space, E: Energy<S>> Derivatives<S> for E {
-    fn first(&self, sigma: S::Sigma<f64>) -> S::Sigma<f64> {
-        self.gradient(sigma)
-    }
-    fn second(&self, sigma: S::Sigma<f64>) -> [[f64; 3]; 3] {
-        self.hessian(sigma)
-    }
-}
-
 impl<S: Space> Eigensystem<S> {
     /// At F (column by column).
     pub fn new<E: Energy<S>>(energy: E, f: S::Gradient<f64>) -> Self {
-        Self::of(&energy, f)
+        Self::of(f, &|sigma| energy.gradient(sigma), &|sigma| {
+            energy.hessian(sigma)
+        })
     }
 
+    /// Of any function of the singular values with this gradient and these second derivatives, at F; behind
+    /// pointers, so that it is compiled once a dimension, not once a function.
     #[inline(never)]
-    fn of(energy: &dyn Derivatives<S>, f: S::Gradient<f64>) -> Self {
+    pub fn of(f: S::Gradient<f64>, gradient: &Gradient<S>, hessian: &Hessian<S>) -> Self {
         const { assert!(S::DIM == S::STRETCHES) };
         let k = S::STRETCHES;
         let (sigma, frame) = S::svd(f);
@@ -58,7 +52,7 @@ impl<S: Space> Eigensystem<S> {
             values: [0.0; MOST],
             modes: [S::Gradient::from_fn(|_| 0.0); MOST],
         };
-        let (values, vectors) = eigen(energy.second(sigma), k);
+        let (values, vectors) = eigen(hessian(sigma), k);
         for m in 0..k {
             this.values[m] = values[m];
             this.modes[m] = S::from_svd(S::Sigma::from_fn(|i| vectors[m][i]), frame);
@@ -79,9 +73,9 @@ impl<S: Space> Eigensystem<S> {
                         both * core::f64::consts::FRAC_1_SQRT_2
                     })
                 };
-                this.values[m] = quotient::<S>(energy, sigma, (i, j), 1.0);
+                this.values[m] = quotient::<S>(gradient, hessian, sigma, (i, j), 1.0);
                 this.modes[m] = mode(-1.0);
-                this.values[m + 1] = quotient::<S>(energy, sigma, (i, j), -1.0);
+                this.values[m + 1] = quotient::<S>(gradient, hessian, sigma, (i, j), -1.0);
                 this.modes[m + 1] = mode(1.0);
                 m += 2;
             }
@@ -168,14 +162,15 @@ const CLOSE: f64 = 1e-5;
 
 /// (ψᵢ + s ψⱼ)/(σᵢ + s σⱼ) for s = ±1.
 fn quotient<S: Space>(
-    energy: &dyn Derivatives<S>,
+    gradient_at: &Gradient<S>,
+    hessian_at: &Hessian<S>,
     sigma: S::Sigma<f64>,
     (i, j): (usize, usize),
     s: f64,
 ) -> f64 {
     let (a, b) = (sigma.at(i), sigma.at(j));
     let numerator = |sigma| {
-        let gradient = energy.first(sigma);
+        let gradient = gradient_at(sigma);
         gradient.at(i) + s * gradient.at(j)
     };
     let close = (CLOSE * (a.abs() + b.abs())).max(1e-12);
@@ -191,7 +186,7 @@ fn quotient<S: Space>(
         _ if c == j => -s * middle,
         _ => sigma.at(c),
     });
-    let gradient = energy.first(between);
+    let gradient = gradient_at(between);
     let size = gradient.at(i).abs() + gradient.at(j).abs();
     let left = gradient.at(i) + s * gradient.at(j);
     if left.abs() > 1e-8 * size {
@@ -199,6 +194,6 @@ fn quotient<S: Space>(
         let away = if difference < 0.0 { -close } else { close };
         return numerator(sigma) / away;
     }
-    let h = energy.second(between);
+    let h = hessian_at(between);
     0.5 * (h[i][i] + h[j][j]) + s * h[i][j]
 }

@@ -3,7 +3,7 @@
 
 use crate::mesh::{SolidMesh, SurfaceMesh};
 use crate::optim::BuildError;
-use glam::{DMat3, DVec3};
+use glam::{DMat2, DMat3, DVec3};
 
 /// Rest shapes of simplices of dimension k, each in its own frame.
 #[derive(Debug, Clone, Default)]
@@ -37,6 +37,22 @@ pub fn surface_area(mesh: &SurfaceMesh) -> f64 {
             0.5 * (b - a).cross(c - a).length()
         })
         .sum()
+}
+
+/// Are all of these signed measures negative?
+fn oriented(measures: &[f64]) -> Result<bool, BuildError> {
+    let mean = measures.iter().map(|v| v.abs()).sum::<f64>() / measures.len().max(1) as f64;
+    let small = |v: &&f64| !(v.abs() > 1e-14 * mean && v.is_finite());
+    if let Some(index) = measures.iter().position(|v| small(&v)) {
+        let measure = measures[index];
+        return Err(BuildError::DegenerateElement { index, measure });
+    }
+    let turned = measures.iter().all(|&v| v < 0.0);
+    if let (false, Some(index)) = (turned, measures.iter().position(|&v| v < 0.0)) {
+        let measure = measures[index];
+        return Err(BuildError::InvertedRestElement { index, measure });
+    }
+    Ok(turned)
 }
 
 impl RestShape {
@@ -78,6 +94,38 @@ impl RestShape {
         Ok(rest)
     }
 
+    /// Rest shapes of triangles in the plane z = constant, in its x and y, and whether all of them were
+    /// clockwise, and are turned (by an exchange of their last two vertices).
+    ///
+    /// # Errors
+    /// `DegenerateElement` names the first triangle whose area is below 1e-14 of the mean, `InvertedRestElement`
+    /// the first that is clockwise where others are not.
+    pub fn of_plane(mesh: &SurfaceMesh) -> Result<(Self, bool), BuildError> {
+        let edges = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| mesh.positions[v as usize].truncate());
+            DMat2::from_cols(b - a, c - a)
+        };
+        let areas: Vec<f64> = mesh
+            .simplices
+            .iter()
+            .map(|t| 0.5 * edges(t).determinant())
+            .collect();
+        let turned = oriented(&areas)?;
+        let mut rest = RestShape {
+            stretches: 2,
+            vertices: Vec::with_capacity(3 * mesh.simplices.len()),
+            inverse: Vec::with_capacity(4 * mesh.simplices.len()),
+            measure: areas.iter().map(|a| a.abs()).collect(),
+        };
+        for &[a, b, c] in &mesh.simplices {
+            let triangle = if turned { [a, c, b] } else { [a, b, c] };
+            rest.vertices.extend(triangle);
+            rest.inverse
+                .extend(edges(&triangle).inverse().to_cols_array());
+        }
+        Ok((rest, turned))
+    }
+
     /// Rest shapes of the tetrahedra of a solid, and whether all of them were inside out, and are turned
     /// (by an exchange of their last two vertices).
     ///
@@ -94,17 +142,7 @@ impl RestShape {
             .iter()
             .map(|t| edges(t).determinant() / 6.0)
             .collect();
-        let mean = volumes.iter().map(|v| v.abs()).sum::<f64>() / volumes.len().max(1) as f64;
-        let small = |v: &&f64| !(v.abs() > 1e-14 * mean && v.is_finite());
-        if let Some(index) = volumes.iter().position(|v| small(&v)) {
-            let measure = volumes[index];
-            return Err(BuildError::DegenerateElement { index, measure });
-        }
-        let turned = volumes.iter().all(|&v| v < 0.0);
-        if let (false, Some(index)) = (turned, volumes.iter().position(|&v| v < 0.0)) {
-            let measure = volumes[index];
-            return Err(BuildError::InvertedRestElement { index, measure });
-        }
+        let turned = oriented(&volumes)?;
         let mut rest = RestShape {
             stretches: 3,
             vertices: Vec::with_capacity(4 * mesh.simplices.len()),

@@ -127,6 +127,24 @@ impl BlockSum {
         }
     }
 
+    /// Puts rows and columns of the identity in place of those of held vertices (one entry a vertex).
+    pub fn hold(&mut self, held: &[bool]) {
+        if !held.contains(&true) {
+            return;
+        }
+        let d = self.dimension;
+        let (offsets, rows, values) = self.matrix.csc_data_mut();
+        for (column, ends) in offsets.windows(2).enumerate() {
+            let entries = ends[0]..ends[1];
+            let whole = held[column / d];
+            for (&row, value) in rows[entries.clone()].iter().zip(&mut values[entries]) {
+                if whole || held[row / d] {
+                    *value = f64::from(u8::from(row == column));
+                }
+            }
+        }
+    }
+
     /// Adds `factor` · a aᵀ at a vertex, in dimension 2.
     pub fn add_product(&mut self, vertex: usize, a: [f64; 2], factor: f64) {
         let (offsets, _, values) = self.matrix.csc_data_mut();

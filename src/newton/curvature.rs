@@ -1,7 +1,8 @@
 //! The matrices of the elements, whose sum is what a step solves with.
 
+use super::corners::corner_blocks;
 use crate::energy::Energy;
-use crate::energy::hessian::{Eigensystem, MOST, Square};
+use crate::energy::hessian::{Eigensystem, Square};
 use crate::space::{Components, Space};
 use crate::wrapd::block::{Block, Row};
 use core::marker::PhantomData;
@@ -54,32 +55,10 @@ impl<S: Space, M: OfGradient<S>> Curvature for OnCorners<S, M> {
     }
 }
 
-/// `measure` times the matrix on F as blocks of pairs of corners, by the gradients of their hat functions; apart
-/// from [`OnCorners::fill`], so that it is compiled once a dimension, not once an energy.
+/// [`corner_blocks`], compiled once a dimension, not once an energy.
 #[inline(never)]
 fn to_corners<S: Space>(h: &Square, hats: &[[f64; 3]; 4], measure: f64, out: &mut [f64]) {
-    let (d, k) = (S::DIM, S::STRETCHES);
-    // ∂F/∂x_v maps y to y ⊗ g_v: for each corner H times it
-    let mut products = [[[0.0; 3]; MOST]; 4];
-    for (product, g) in products.iter_mut().zip(&hats[..=k]) {
-        for (row, product) in h[..d * k].iter().zip(product) {
-            for (j, product) in product[..d].iter_mut().enumerate() {
-                *product = (0..k).map(|c| row[c * d + j] * g[c]).sum();
-            }
-        }
-    }
-    let mut next = out.chunks_exact_mut(d * d);
-    for u in 0..=k {
-        for v in 0..=u {
-            let Some(target) = next.next() else { continue };
-            for i in 0..d {
-                for j in 0..d {
-                    let sum: f64 = (0..k).map(|c| hats[u][c] * products[v][c * d + i][j]).sum();
-                    target[i * d + j] = measure * sum;
-                }
-            }
-        }
-    }
+    corner_blocks((S::DIM, S::STRETCHES), h, hats, measure, out);
 }
 
 /// The gradients of the hat functions of an element's corners.

@@ -13,6 +13,7 @@
 //! Elements are evaluated by the kernels of [`crate::wrapd`].
 
 pub mod bound;
+pub(crate) mod corners;
 pub(crate) mod curvature;
 mod hybrid;
 mod majorization;

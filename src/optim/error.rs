@@ -17,6 +17,11 @@ pub enum BuildError {
     /// The solver needs an injective start.
     #[error("the start has {inverted} inverted elements, and this method needs none")]
     NotInjectiveStart { inverted: usize },
+    /// The start has inverted elements, and the method keeps to starts that have none.
+    #[error(
+        "the start has {inverted} inverted or degenerate elements, the first of them element {first}: this method only keeps maps free of inversions that are so; untangle the start first"
+    )]
+    InvertedStart { inverted: usize, first: usize },
     /// An option is out of its range.
     #[error("option {option}: {what}")]
     InvalidOption { option: &'static str, what: String },
@@ -41,7 +46,9 @@ impl BuildError {
         match self {
             BuildError::DegenerateElement { .. } => "degenerate-element",
             BuildError::InvertedRestElement { .. } => "inverted-rest-element",
-            BuildError::NotInjectiveStart { .. } => "not-injective-start",
+            BuildError::NotInjectiveStart { .. } | BuildError::InvertedStart { .. } => {
+                "not-injective-start"
+            }
             BuildError::InvalidOption { .. } => "invalid-option",
             BuildError::WrongLength { .. } => "wrong-length",
             BuildError::NotPositiveDefinite { .. } => "not-positive-definite",

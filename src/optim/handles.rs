@@ -46,4 +46,9 @@ pub trait Deformer: Solver {
     ) -> Result<(), SolveError>;
     /// A field at the newest iterate, one value an element, in the input's order.
     fn field(&self, field: Field) -> Vec<f32>;
+    /// Where the last step led pinned vertices that are not yet where they are wanted, of methods that bring
+    /// them there step by step: vertex and point.
+    fn sub_targets(&self) -> Vec<(u32, [f64; 3])> {
+        Vec::new()
+    }
 }

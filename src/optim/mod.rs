@@ -3,6 +3,7 @@
 mod error;
 mod handles;
 pub mod lbfgs;
+mod lim_step;
 mod solver;
 mod stopwatch;
 pub mod vectors;
@@ -10,6 +11,7 @@ mod yardstick;
 
 pub use error::{BuildError, SolveError};
 pub use handles::{Deformer, Field, Spring};
+pub use lim_step::LimStep;
 pub use solver::{
     CancelToken, Criterion, Inspection, Observer, Phase, PhaseKind, Solver, Status, StepReport, run,
 };

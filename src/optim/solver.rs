@@ -1,6 +1,6 @@
 //! The one object-safe interface of all iterative solvers.
 
-use super::{SolveError, Stopwatch, Yardstick};
+use super::{LimStep, SolveError, Stopwatch, Yardstick};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -112,6 +112,9 @@ pub struct StepReport {
     pub reweighted: bool,
     /// Of a method in two stages: the iteration with which the first ended.
     pub switched_at: Option<usize>,
+    /// Of a locally injective map: what the step was made with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lim: Option<LimStep>,
     /// Seconds spent in steps, setup and the time between steps apart.
     pub seconds: f64,
     /// The phases, in order.
@@ -132,6 +135,7 @@ impl StepReport {
             lbfgs_iterations: 0,
             reweighted: false,
             switched_at: None,
+            lim: None,
             seconds: 0.0,
             phases: Vec::new(),
         }

@@ -5,6 +5,7 @@ use crate::relaxation::Relaxation;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use foldfree::deformation::{ClothOptions, DeformationOptions, Material};
+use foldfree::lim::{LimEnergy, LimHessian, LimOptions};
 use foldfree::mesh::{Shape, SolidShape};
 use foldfree::parameterization::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
 use serde::de::DeserializeOwned;
@@ -96,42 +97,91 @@ pub struct Parameterize {
     pub quiet: bool,
 }
 
-/// Deform an elastic solid to the minimum of its energy; exit code 2 when it did not converge.
+/// Deform an elastic solid to the minimum of its energy, or (--method lim) a solid or triangles in the plane
+/// without inverting any element; exit code 2 when it did not converge.
 #[derive(Debug, Args)]
 pub struct Deform {
     /// Rest shape: .node and .ele (either name stands for both), .mesh, .msh or .vtk, also with .gz
-    /// behind; INIT if left out.
+    /// behind; of --method lim also triangles in a plane z = constant (.obj, .off, .ply, .stl and these). INIT if
+    /// left out.
     #[arg(long, value_name = "R")]
     pub rest: Option<PathBuf>,
-    /// Where it starts: .node (or .ele), .mesh, .msh or .vtk, also with .gz behind. May be inverted.
+    /// Where it starts, in any of these formats. May be inverted, but not for --method lim.
     #[arg(long, value_name = "I")]
     pub init: PathBuf,
-    /// Elastic energy.
-    #[arg(long, default_value = Material::NAMES[0], value_parser = PossibleValuesParser::new(Material::NAMES))]
-    pub energy: String,
+    /// Energy; left out: neo-hookean, and arap of --method lim. The last four and arap and dirichlet are those of
+    /// lim.
+    #[arg(long, value_parser = PossibleValuesParser::new(energies_of_solids()))]
+    pub energy: Option<String>,
     /// Young's modulus (neo-hookean, stable-neo-hookean, st-venant-kirchhoff).
     #[arg(long, value_name = "E", default_value_t = Material::YOUNG)]
     pub young: f64,
     /// Poisson's ratio (the same).
     #[arg(long, value_name = "N", default_value_t = Material::POISSON)]
     pub poisson: f64,
+    /// Without the barrier against inversion (--method lim): elements may invert.
+    #[arg(long)]
+    pub no_barrier: bool,
+    /// How hard the barrier pushes, β (--method lim); left out: 0.01, and 100 of green-strain.
+    #[arg(long, value_name = "B", value_parser = positive)]
+    pub barrier_weight: Option<f64>,
+    /// Second derivatives of energies with rotations (--method lim).
+    #[arg(long, default_value = "projected", value_parser = names::<LimHessian>(&["projected", "frozen"]))]
+    pub hessian: LimHessian,
     /// What it shares with cloth.
     #[command(flatten)]
     pub relaxation: Relaxation,
 }
 
+/// Names of materials, then of energies that only locally injective mappings have.
+fn energies_of_solids() -> Vec<&'static str> {
+    let mut names = Material::NAMES.to_vec();
+    names.extend(
+        LimEnergy::NAMES
+            .iter()
+            .filter(|n| !Material::NAMES.contains(n)),
+    );
+    names
+}
+
 impl Deform {
-    /// The library's options.
-    pub fn options(&self) -> DeformationOptions {
-        // the parser knows no other names
-        let material = Material::named(&self.energy, self.young, self.poisson).unwrap_or_default();
-        DeformationOptions {
+    /// The library's options, of any method but lim.
+    pub fn options(&self) -> Result<DeformationOptions, String> {
+        let name = self.energy.as_deref().unwrap_or(Material::NAMES[0]);
+        let Some(material) = Material::named(name, self.young, self.poisson) else {
+            return Err(format!("--energy {name} goes with --method lim"));
+        };
+        if self.no_barrier || self.barrier_weight.is_some() {
+            return Err("--no-barrier and --barrier-weight go with --method lim".into());
+        }
+        Ok(DeformationOptions {
             material,
             method: self.relaxation.method,
             target_stiffness: self.relaxation.target_stiffness,
             tolerance: self.relaxation.tolerance,
             max_iterations: self.relaxation.iterations,
-        }
+        })
+    }
+
+    /// The library's options of locally injective mappings.
+    pub fn lim_options(&self) -> Result<LimOptions, String> {
+        let name = self.energy.as_deref().unwrap_or(LimEnergy::NAMES[0]);
+        let Some(energy) = LimEnergy::named(name) else {
+            let known = LimEnergy::NAMES.join(", ");
+            return Err(format!(
+                "--method lim has no energy {name} (it has {known})"
+            ));
+        };
+        Ok(LimOptions {
+            energy,
+            barrier: !self.no_barrier,
+            barrier_weight: self.barrier_weight,
+            hessian: self.hessian,
+            target_stiffness: self.relaxation.target_stiffness,
+            tolerance: self.relaxation.tolerance,
+            max_iterations: self.relaxation.iterations,
+            ..Default::default()
+        })
     }
 }
 

@@ -4,12 +4,15 @@ use crate::arguments::Deform;
 use crate::failure::Failure;
 use crate::relaxation::{Body, check_start};
 use crate::solids::{read_positions, read_solid, write_deformed};
-use crate::{Outcome, solids};
-use foldfree::deformation::Deformation;
+use crate::{Outcome, injective, solids};
+use foldfree::deformation::{Deformation, DeformationMethod};
 
 /// Reads, deforms, writes, reports.
 pub fn run(arguments: &Deform) -> Result<Outcome, Failure> {
-    let options = arguments.options();
+    if arguments.relaxation.method == DeformationMethod::Lim {
+        return injective::run(arguments);
+    }
+    let options = arguments.options().map_err(Failure::new)?;
     let relaxation = &arguments.relaxation;
     if let Some(path) = &relaxation.out {
         solids::check_format(path)?;

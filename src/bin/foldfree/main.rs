@@ -11,6 +11,7 @@ mod failure;
 mod files;
 mod generate;
 mod handles;
+mod injective;
 mod miqp;
 mod parameterize;
 mod progress;

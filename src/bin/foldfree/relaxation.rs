@@ -28,8 +28,8 @@ pub struct Relaxation {
     /// How hard targets pull, relative to how hard the body holds on to a vertex.
     #[arg(long, value_name = "K", default_value_t = DeformationOptions::default().target_stiffness, value_parser = positive)]
     pub target_stiffness: f64,
-    /// How; newton and wrapd+newton are for solids.
-    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "newton", "wrapd+newton"]))]
+    /// How; newton, wrapd+newton and lim are for solids, lim is also for triangles in the plane.
+    #[arg(long, default_value = "wrapd", value_parser = names::<DeformationMethod>(&["wrapd", "r-admm", "w-admm", "admm-pd", "l-bfgs", "newton", "wrapd+newton", "lim"]))]
     pub method: DeformationMethod,
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = DeformationOptions::default().max_iterations)]
@@ -222,9 +222,12 @@ impl Relaxation {
 }
 
 fn distance(solver: &dyn Solver, solution: &[DVec3]) -> f64 {
-    let positions = solver.positions().as_chunks::<3>().0.iter();
-    let squares = positions
-        .zip(solution)
-        .map(|(&p, s)| DVec3::from_array(p).distance_squared(*s));
+    // of triangles in the plane without z, in which nothing moves
+    let dimension = solver.dimension();
+    let positions = solver.positions().chunks_exact(dimension);
+    let squares = positions.zip(solution).map(|(p, s)| {
+        let coordinates = p.iter().zip(s.to_array());
+        coordinates.map(|(p, s)| (p - s) * (p - s)).sum::<f64>()
+    });
     squares.sum::<f64>().sqrt()
 }

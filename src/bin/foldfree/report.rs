@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use foldfree::certificate::{Certificate, SolidCertificate};
-use foldfree::optim::{Phase, PhaseKind, Status, StepReport};
+use foldfree::optim::{LimStep, Phase, PhaseKind, Status, StepReport};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
@@ -56,6 +56,9 @@ pub struct Iteration {
     /// Of a method in two stages: the iteration with which the first ended, once it has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub switched_at: Option<usize>,
+    /// Of locally injective maps: α, μ, σ, and where the handles are.
+    #[serde(serialize_with = "snake_keys", skip_serializing_if = "Option::is_none")]
+    pub lim: Option<LimStep>,
     /// ‖x − x*‖/‖x₀ − x*‖ against the reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_error: Option<f64>,
@@ -88,6 +91,7 @@ impl From<&StepReport> for Iteration {
             lbfgs_iterations: step.lbfgs_iterations,
             reweighted: step.reweighted,
             switched_at: step.switched_at,
+            lim: step.lim,
             position_error: None,
             phases: step.phases.iter().map(phase).collect(),
         }

@@ -34,11 +34,13 @@ pub enum Shape {
     Sheet,
     /// A flat disk.
     RoundSheet,
+    /// A unit square whose cells are all split along the same diagonal.
+    Grid,
 }
 
 impl Shape {
     /// All shapes, in the order a picker shows them.
-    pub const ALL: [Shape; 9] = [
+    pub const ALL: [Shape; 10] = [
         Shape::BumpyCap,
         Shape::Terrain,
         Shape::SpiralRamp,
@@ -48,6 +50,7 @@ impl Shape {
         Shape::RoundedCube,
         Shape::Sheet,
         Shape::RoundSheet,
+        Shape::Grid,
     ];
 
     /// The stable name, as used on the command line and in JavaScript (`"bumpy-cap"`).
@@ -62,6 +65,7 @@ impl Shape {
             Shape::RoundedCube => "rounded-cube",
             Shape::Sheet => "sheet",
             Shape::RoundSheet => "round-sheet",
+            Shape::Grid => "grid",
         }
     }
 
@@ -82,6 +86,7 @@ impl Shape {
             Shape::RoundedCube => "Rounded cube",
             Shape::Sheet => "Sheet",
             Shape::RoundSheet => "Round sheet",
+            Shape::Grid => "Grid",
         }
     }
 
@@ -111,6 +116,7 @@ impl Shape {
             }
             Shape::Sheet => "A flat square, as cloth lies before it is lifted.",
             Shape::RoundSheet => "A flat disk, as a round cloth lies before it is lifted.",
+            Shape::Grid => "A flat unit square of equal triangles, to be deformed in its plane.",
         }
     }
 }
@@ -128,6 +134,7 @@ pub fn generate(shape: Shape, triangles: usize) -> SurfaceMesh {
         Shape::RoundedCube => closed::rounded_cube(triangles),
         Shape::Sheet => open::sheet(triangles),
         Shape::RoundSheet => open::round_sheet(triangles),
+        Shape::Grid => open::unit_grid(triangles),
     };
     round_positions(&mut mesh.positions);
     mesh

@@ -84,6 +84,22 @@ pub(super) fn sheet(triangles: usize) -> SurfaceMesh {
     })
 }
 
+/// A flat square of side 1 at the origin, all cells split along the diagonal from (0, 0) to (1, 1).
+pub(super) fn unit_grid(triangles: usize) -> SurfaceMesh {
+    let side = root(wish(triangles) / 2.0, 1);
+    let mut mesh = grid(side, side, |s, t| DVec3::new(s, t, 0.0));
+    mesh.simplices.clear();
+    for row in 0..side {
+        for column in 0..side {
+            let v = (row * (side + 1) + column) as u32;
+            let above = v + side as u32 + 1;
+            let cell = [[v, v + 1, above + 1], [v, above + 1, above]];
+            mesh.simplices.extend(cell);
+        }
+    }
+    mesh
+}
+
 /// A flat disk of radius 1.
 pub(super) fn round_sheet(triangles: usize) -> SurfaceMesh {
     hexagonal_disk(root(wish(triangles) / 6.0, 2), |radius, angle| {
