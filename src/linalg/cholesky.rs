@@ -88,7 +88,9 @@ impl Cholesky {
                 Default::default(),
             ),
         };
-        let blocks = vec![0.0; symbolic.len_val() + 1];
+        // anything but zeros is written now, and the first factorisation does not wait for its memory
+        let mut blocks = vec![1.0; symbolic.len_val() + 1];
+        blocks[symbolic.len_val()] = 0.0;
         let panels = Panels::new(&upper, levels);
         let source = sources(&symbolic, &panels);
         let diagonal = panels.diagonal();
@@ -96,7 +98,7 @@ impl Cholesky {
             symbolic,
             blocks,
             workspace: MemBuffer::new(scratch),
-            values: vec![0.0; panels.values],
+            values: vec![1.0; panels.values],
             source,
             inverse_diagonal: vec![0.0; n],
             diagonal,

@@ -79,7 +79,8 @@ impl NewtonSystem {
         Ok(Self {
             factor: Cholesky::analyze(matrix.matrix(), &levels)?,
             matrix,
-            blocks: vec![0.0; evaluation.blocks.len() * BLOCK * stride(d)],
+            // written, so that the first step does not wait for its memory
+            blocks: vec![1.0; evaluation.blocks.len() * BLOCK * stride(d)],
             diagonal: vec![0.0; elimination.free],
             rest_diagonal,
             proximal,
