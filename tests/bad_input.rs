@@ -185,20 +185,6 @@ fn not_a_surface() {
 }
 
 #[test]
-fn several_pieces() {
-    let mut pieces = square();
-    let other = square();
-    pieces
-        .positions
-        .extend(other.positions.iter().map(|&p| p + DVec3::X * 5.0));
-    pieces
-        .simplices
-        .extend(other.simplices.iter().map(|t| t.map(|v| v + 5)));
-    let error = refused(&pieces, "several-components");
-    assert_eq!(error, MeshError::SeveralComponents { components: 2 });
-}
-
-#[test]
 fn cutting_refused() {
     let refusing = ParameterizationOptions {
         cut: CutPolicy::Refuse,

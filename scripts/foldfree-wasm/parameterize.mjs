@@ -8,7 +8,7 @@ import { iterationOf, sayer, timed, writeReport } from './report.mjs';
 
 export const options = {
   method: text, energy: text, start: text, iterations: text, tolerance: text, threads: text, seed: text, out: text,
-  report: text, quiet, 'no-cut': flag, 'no-rotation-aware': flag, 'no-reweighting': flag,
+  report: text, quiet, 'no-cut': flag, 'keep-holes': flag, 'no-rotation-aware': flag, 'no-reweighting': flag,
   landmarks: text, hard: flag, 'landmark-stiffness': text,
 };
 
@@ -16,6 +16,11 @@ function methodOf({ method = 'wrapd', 'no-rotation-aware': linear, 'no-reweighti
   if (!linear && !fixed) return method;
   if (method !== 'wrapd') throw new Failure('--no-rotation-aware and --no-reweighting go with --method wrapd');
   return linear ? (fixed ? 'admm-pd' : 'w-admm') : 'r-admm';
+}
+
+function cutOf({ 'no-cut': refuse, 'keep-holes': keep }) {
+  if (refuse && keep) throw new Failure('--keep-holes does not go with --no-cut');
+  return keep ? 'keep-holes' : refuse ? 'refuse' : 'cut';
 }
 
 /** Places for vertices of a mesh of so many. */
@@ -34,7 +39,7 @@ export function run(input, values) {
     ...core.defaultOptions(),
     ...given({
       method: methodOf(values),
-      cut: values['no-cut'] ? 'refuse' : 'cut',
+      cut: cutOf(values),
       energy: values.energy,
       start: values.start,
       maxIterations: whole('iterations', values.iterations),

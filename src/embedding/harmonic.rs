@@ -14,7 +14,17 @@ pub fn harmonic(
     rest: &RestShape,
     boundary: &[u32],
 ) -> Result<Vec<DVec2>, BuildError> {
-    weighted(mesh, rest, boundary, &cotangent_weights(rest))
+    harmonic_around(mesh, rest, boundary, &[])
+}
+
+/// The same of a surface with holes, each of which has a vertex in its middle, tied to all of its rim.
+pub fn harmonic_around(
+    mesh: &SurfaceMesh,
+    rest: &RestShape,
+    boundary: &[u32],
+    holes: &[Vec<u32>],
+) -> Result<Vec<DVec2>, BuildError> {
+    weighted(mesh, rest, boundary, holes, &cotangent_weights(rest))
 }
 
 /// Tutte's embedding (1963; Floater 1997) in a circle of unit area: never has flips in exact
@@ -24,7 +34,18 @@ pub fn tutte(
     rest: &RestShape,
     boundary: &[u32],
 ) -> Result<Vec<DVec2>, BuildError> {
-    weighted(mesh, rest, boundary, &uniform_weights(rest))
+    tutte_around(mesh, rest, boundary, &[])
+}
+
+/// The same of a surface with holes, each of which has a vertex in its middle, tied to all of its rim: without the
+/// middles an embedding of the surface.
+pub fn tutte_around(
+    mesh: &SurfaceMesh,
+    rest: &RestShape,
+    boundary: &[u32],
+    holes: &[Vec<u32>],
+) -> Result<Vec<DVec2>, BuildError> {
+    weighted(mesh, rest, boundary, holes, &uniform_weights(rest))
 }
 
 /// The map whose interior vertices are the weighted means of their neighbours.
@@ -32,11 +53,19 @@ fn weighted(
     mesh: &SurfaceMesh,
     rest: &RestShape,
     boundary: &[u32],
+    holes: &[Vec<u32>],
     weights: &[[f64; 3]],
 ) -> Result<Vec<DVec2>, BuildError> {
+    let n = mesh.positions.len();
+    let middles = (n as u32..).zip(holes);
+    let spokes: Vec<(u32, u32, f64)> = middles
+        .flat_map(|(middle, rim)| rim.iter().map(move |&v| (v, middle, 1.0)))
+        .collect();
     let circle = boundary_to_circle(mesh, boundary);
     let fixed: Vec<_> = boundary.iter().copied().zip(circle).collect();
-    extension(rest, mesh.positions.len(), &fixed, weights)
+    let mut map = extension(rest, n + holes.len(), &fixed, weights, &spokes)?;
+    map.truncate(n);
+    Ok(map)
 }
 
 /// The vectors at these vertices, and harmonically what they make of all others.
@@ -48,7 +77,7 @@ pub fn harmonic_extension(
     vertices: usize,
     fixed: &[(u32, DVec2)],
 ) -> Result<Vec<DVec2>, BuildError> {
-    extension(rest, vertices, fixed, &cotangent_weights(rest))
+    extension(rest, vertices, fixed, &cotangent_weights(rest), &[])
 }
 
 fn extension(
@@ -56,13 +85,14 @@ fn extension(
     n: usize,
     fixed: &[(u32, DVec2)],
     weights: &[[f64; 3]],
+    spokes: &[(u32, u32, f64)],
 ) -> Result<Vec<DVec2>, BuildError> {
     let mut map = vec![DVec2::ZERO; n];
     for &(v, p) in fixed {
         map[v as usize] = p;
     }
     let pins: Vec<u32> = fixed.iter().map(|&(v, _)| v).collect();
-    let Elimination { slot, free, levels } = Elimination::new(rest, n, &pins);
+    let Elimination { slot, free, levels } = Elimination::with_couplings(rest, n, &pins, spokes);
     let is_free = |slot: u32| (slot as usize) < free;
 
     // each edge of each element: both diagonals and the off-diagonal entry
@@ -71,6 +101,7 @@ fn extension(
         .chunks_exact(3)
         .zip(weights)
         .flat_map(|(t, w)| [(t[1], t[2], w[0]), (t[2], t[0], w[1]), (t[0], t[1], w[2])])
+        .chain(spokes.iter().copied())
         .collect();
     let entries: Vec<(u32, u32, f64)> = edges
         .iter()

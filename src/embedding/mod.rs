@@ -7,5 +7,5 @@ mod lscm;
 
 pub use circle::boundary_to_circle;
 pub use direct::DirectMap;
-pub use harmonic::{harmonic, harmonic_extension, tutte};
+pub use harmonic::{harmonic, harmonic_around, harmonic_extension, tutte, tutte_around};
 pub use lscm::lscm;

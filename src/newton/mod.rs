@@ -20,6 +20,7 @@ mod majorization;
 #[cfg(test)]
 mod majorization_tests;
 mod options;
+mod pieces;
 mod solver;
 mod system;
 mod turns;

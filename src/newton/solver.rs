@@ -9,6 +9,7 @@ use self::attempts::{FIRST_PART, Tried};
 use super::NewtonOptions;
 use super::curvature::{Curvature, OnCorners, Projected};
 use super::majorization::CompositeMajorization;
+use super::pieces::only_pins;
 use super::system::NewtonSystem;
 use super::turns::Turns;
 use crate::energy::{Energy, SymmetricDirichlet};
@@ -44,6 +45,9 @@ pub struct Newton {
     turns: Option<Turns>,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
+    /// Of a plane that nothing else holds: the piece of each slot, and the only pins of those that have one.
+    piece: Vec<u32>,
+    only_pins: Vec<u32>,
     /// Number of unknowns, which come first in what is by slot.
     unknowns: usize,
     /// Positions by slot.
@@ -169,6 +173,10 @@ impl Newton {
             true => Some(Turns::new(&problem, &elimination, &evaluation)?),
             false => None,
         };
+        let (piece, only_pins) = match planar && evaluation.terms.is_none() {
+            true => only_pins(problem.rest, &elimination),
+            false => Default::default(),
+        };
         let yardstick = evaluation.yardstick();
         let constants = &evaluation.shape.constants;
         let measure: f64 = problem.rest.measure.iter().sum();
@@ -183,6 +191,8 @@ impl Newton {
             system,
             turns,
             slot: elimination.slot,
+            piece,
+            only_pins,
             unknowns,
             x: vec![0.0; length],
             trial: vec![0.0; length],

@@ -144,13 +144,13 @@ impl NewtonSystem {
     /// positive definite.
     pub fn factorize_as_is(
         &mut self,
-        held: Option<(usize, [f64; 2])>,
+        held: &[(usize, [f64; 2])],
     ) -> Result<(), NotPositiveDefinite> {
         let shift = self.least_shift;
         let (diagonal, rest) = (&self.diagonal, &self.rest_diagonal);
         self.matrix
             .add_to_diagonal(|v| shift * diagonal[v].abs().max(rest[v]));
-        if let Some((vertex, along)) = held {
+        for &(vertex, along) in held {
             let stiffness = diagonal[vertex].abs().max(rest[vertex]);
             self.matrix.add_product(vertex, along, stiffness);
         }

@@ -1,9 +1,11 @@
 //! From a mesh to a flattening: the problem (a disk, scaled to unit area), its starts, and the
 //! choice of a solver.
 
+mod atlas;
 mod landmarks;
 mod options;
 mod problem;
+mod shelves;
 mod starts;
 
 pub use landmarks::Landmark;

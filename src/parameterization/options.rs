@@ -74,6 +74,9 @@ pub enum CutPolicy {
     /// Cut it to a disk along short seams.
     #[default]
     Cut,
+    /// The same, but holes stay: only what has handles, or no boundary, is cut. Right where a hole is a hole, like
+    /// the eyes of a mask; a tube that is not cut open has to stretch.
+    KeepHoles,
     /// Refuse with `NotADisk`.
     Refuse,
 }

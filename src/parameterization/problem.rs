@@ -1,21 +1,23 @@
 //! A mesh, made ready, and the solver that flattens it.
 
+use super::atlas::Atlas;
 use super::landmarks::{Landmark, Landmarks};
+use super::shelves::lay_out;
 use super::starts::start;
-use super::{CutPolicy, EnergyKind, Method, ParameterizationOptions, Start};
+use super::{EnergyKind, Method, ParameterizationOptions, Start};
 use crate::Error;
 use crate::certificate::Certificate;
-use crate::embedding::{DirectMap, harmonic, lscm, tutte};
+use crate::embedding::DirectMap;
 use crate::energy::{Arap, Energy, SymmetricDirichlet};
 use crate::geometry::{RestShape, surface_area};
 use crate::local_global::ArapLocalGlobal;
-use crate::mesh::cut::cut_to_disk;
-use crate::mesh::{MeshError, Prepared, SurfaceMesh, Topology, prepare};
+use crate::mesh::{MeshError, SurfaceMesh};
 use crate::newton::{Hybrid, Newton, NewtonOptions};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
 use crate::slim::slim;
 use crate::space::Plane;
 use crate::wrapd::{Linear, Problem, Reweighting, RotationAware, Wrapd, WrapdOptions};
+use core::ops::Range;
 use glam::DVec2;
 
 /// A flattening in progress.
@@ -23,6 +25,7 @@ pub struct Parameterization {
     mesh: SurfaceMesh,
     input_vertices: Vec<u32>,
     seam_edges: usize,
+    charts: Vec<Range<u32>>,
     notes: Vec<String>,
     /// Lengths of the input × `scale` = lengths of the solver, where the surface has unit area.
     scale: f64,
@@ -31,69 +34,19 @@ pub struct Parameterization {
     solver: Box<dyn Solver>,
 }
 
-/// A surface cut to a disk, with where its vertices come from.
-struct Disk {
-    mesh: SurfaceMesh,
-    topology: Topology,
-    input_vertices: Vec<u32>,
-    seam_edges: usize,
-    notes: Vec<String>,
-}
-
-fn disk(mesh: &SurfaceMesh, policy: CutPolicy) -> Result<Disk, Error> {
-    let Prepared {
-        mesh,
-        input_vertices,
-        topology,
-        mut notes,
-    } = prepare(mesh)?;
-    if topology.components() != 1 {
-        return Err(MeshError::SeveralComponents {
-            components: topology.components(),
-        }
-        .into());
-    }
-    if topology.is_disk() {
-        return Ok(Disk {
-            mesh,
-            topology,
-            input_vertices,
-            seam_edges: 0,
-            notes,
-        });
-    }
-    if policy == CutPolicy::Refuse {
-        return Err(MeshError::NotADisk {
-            euler_characteristic: topology.euler_characteristic(),
-            boundary_loops: topology.boundary_loops().len(),
-        }
-        .into());
-    }
-    let cut = cut_to_disk(&mesh, &topology)?;
-    notes.push(format!(
-        "cut to a disk along {} edges (Euler characteristic {}, {} boundary loops)",
-        cut.seam_edges.len(),
-        topology.euler_characteristic(),
-        topology.boundary_loops().len(),
-    ));
-    Ok(Disk {
-        topology: Topology::new(&cut.mesh)?,
-        input_vertices: cut
-            .source_vertices
-            .iter()
-            .map(|&v| input_vertices[v as usize])
-            .collect(),
-        seam_edges: cut.seam_edges.len(),
-        mesh: cut.mesh,
-        notes,
-    })
-}
-
 fn interleave(map: &[DVec2]) -> Vec<f64> {
     map.iter().flat_map(|p| [p.x, p.y]).collect()
 }
 
-/// The vertex nearest to the centre of the bounding box: the one that is pinned.
+/// Of each chart the vertex that is pinned.
+fn central_vertices(map: &[DVec2], atlas: &Atlas) -> Vec<u32> {
+    let charts = atlas.charts.iter().map(|chart| &chart.vertices);
+    charts
+        .map(|v| v.start + central_vertex(&map[v.start as usize..v.end as usize]))
+        .collect()
+}
+
+/// The vertex nearest to the centre of the bounding box.
 fn central_vertex(map: &[DVec2]) -> u32 {
     let low = map.iter().fold(DVec2::INFINITY, |a, &b| a.min(b));
     let high = map.iter().fold(DVec2::NEG_INFINITY, |a, &b| a.max(b));
@@ -109,7 +62,7 @@ fn central_vertex(map: &[DVec2]) -> u32 {
 }
 
 impl Parameterization {
-    /// Checks the mesh, cuts it to a disk (or refuses), scales it to unit area, finds the start and
+    /// Checks the mesh, cuts each of its pieces to a disk (or refuses), scales it to unit area, finds the start and
     /// builds the solver.
     ///
     /// # Errors
@@ -134,20 +87,13 @@ impl Parameterization {
         let clock = Stopwatch::start();
         options.validate()?;
         let vertices = mesh.positions.len();
-        let Disk {
-            mesh,
-            topology,
-            input_vertices,
-            seam_edges,
-            mut notes,
-        } = disk(mesh, options.cut)?;
-        let area = surface_area(&mesh);
+        let mut atlas = Atlas::new(mesh, options.cut)?;
+        let area = surface_area(&atlas.mesh);
         let scale = area.sqrt().recip();
         if !(scale.is_finite() && scale > 0.0) {
             return Err(MeshError::ZeroArea.into());
         }
-        let rest = RestShape::of_surface(&mesh, scale)?;
-        let boundary = &topology.boundary_loops()[0];
+        let rest = RestShape::of_surface(&atlas.mesh, scale)?;
         let direct = matches!(
             options.method,
             Method::Lscm | Method::Harmonic | Method::Tutte
@@ -163,14 +109,22 @@ impl Parameterization {
             }
             .into());
         }
-        let landmarks = Landmarks::new(landmarks, vertices, &input_vertices, scale)?;
-        let (mut map, start_kind) = start(wanted, options.seed, &mesh, &rest, boundary)?;
+        if !landmarks.is_empty() && atlas.charts.len() > 1 {
+            return Err(BuildError::InvalidOption {
+                option: "landmarks",
+                what: format!("are for one chart; there are {}", atlas.charts.len()),
+            }
+            .into());
+        }
+        let landmarks = Landmarks::new(landmarks, vertices, &atlas.input_vertices, scale)?;
+        let (mut map, start_kind) = start(wanted, options.seed, &atlas, &rest, scale)?;
         if options.start == Start::Automatic && start_kind == Start::Tutte {
+            let notes = &mut atlas.notes;
             notes.push("the harmonic start has flips: Tutte's embedding instead".into());
         }
         let external = landmarks.external(&rest, map.len(), 8.0 * options.landmark_stiffness);
         let pins = match landmarks.is_empty() {
-            true => vec![central_vertex(&map)],
+            true => central_vertices(&map, &atlas),
             false => {
                 landmarks.apply(&rest, &mut map)?;
                 landmarks.pins()
@@ -212,20 +166,22 @@ impl Parameterization {
             )?),
             Method::Lscm | Method::Harmonic | Method::Tutte => {
                 let clock = Stopwatch::start();
-                let map = match options.method {
-                    Method::Lscm => lscm(&mesh, &rest, boundary)?,
-                    Method::Harmonic => harmonic(&mesh, &rest, boundary)?,
-                    _ => tutte(&mesh, &rest, boundary)?,
+                let kind = match options.method {
+                    Method::Lscm => Start::Lscm,
+                    Method::Harmonic => Start::Harmonic,
+                    _ => Start::Tutte,
                 };
+                let (map, _) = start(kind, options.seed, &atlas, &rest, scale)?;
                 let seconds = clock.seconds();
                 Box::new(DirectMap::new(rest, positions, interleave(&map), seconds))
             }
         };
         Ok(Self {
-            mesh,
-            input_vertices,
-            seam_edges,
-            notes,
+            charts: atlas.charts.iter().map(|c| c.vertices.clone()).collect(),
+            mesh: atlas.mesh,
+            input_vertices: atlas.input_vertices,
+            seam_edges: atlas.seam_edges,
+            notes: atlas.notes,
             scale,
             start_kind,
             setup_seconds: clock.seconds(),
@@ -262,16 +218,17 @@ impl Parameterization {
     pub fn step(&mut self) -> Result<StepReport, Error> {
         Ok(self.solver.step()?)
     }
-    /// The map, a point a vertex of [`Self::mesh`], in the input's units.
+    /// The charts: of each its vertices in [`Self::mesh`]. One, unless the surface has several pieces.
+    pub fn charts(&self) -> &[Range<u32>] {
+        &self.charts
+    }
+    /// The map, a point a vertex of [`Self::mesh`], in the input's units; charts side by side.
     pub fn uv(&self) -> Vec<DVec2> {
         let unit = self.scale.recip();
-        self.solver
-            .positions()
-            .as_chunks::<2>()
-            .0
-            .iter()
-            .map(|&[x, y]| unit * DVec2::new(x, y))
-            .collect()
+        let positions = self.solver.positions().as_chunks::<2>().0.iter();
+        let mut map: Vec<DVec2> = positions.map(|&[x, y]| unit * DVec2::new(x, y)).collect();
+        lay_out(&mut map, &self.charts);
+        map
     }
     /// The start that was used (what `Automatic` became).
     pub fn start_kind(&self) -> Start {

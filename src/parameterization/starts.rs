@@ -1,7 +1,8 @@
 //! Starts of a parameterization, in the unit-area scale.
 
 use super::Start;
-use crate::embedding::{harmonic, lscm, tutte};
+use super::atlas::{Atlas, part};
+use crate::embedding::{harmonic_around, lscm, tutte_around};
 use crate::geometry::RestShape;
 use crate::mesh::SurfaceMesh;
 use crate::optim::BuildError;
@@ -27,26 +28,28 @@ fn uniform(seed: u32, counter: u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// The start, and which one `Automatic` became.
-pub(super) fn start(
+/// The start of one chart, and which one `Automatic` became.
+fn of_chart(
     kind: Start,
     seed: u32,
     mesh: &SurfaceMesh,
     rest: &RestShape,
     boundary: &[u32],
+    holes: &[Vec<u32>],
 ) -> Result<(Vec<DVec2>, Start), BuildError> {
     let map = match kind {
         Start::Automatic => {
             // needles can make the cotangent matrix indefinite in floating point
-            if let Ok(map) = harmonic(mesh, rest, boundary)
+            if let Ok(map) = harmonic_around(mesh, rest, boundary, holes)
                 && flips(mesh, &map) == 0
             {
                 return Ok((map, Start::Harmonic));
             }
-            return Ok((tutte(mesh, rest, boundary)?, Start::Tutte));
+            let map = tutte_around(mesh, rest, boundary, holes)?;
+            return Ok((map, Start::Tutte));
         }
-        Start::Harmonic => harmonic(mesh, rest, boundary)?,
-        Start::Tutte => tutte(mesh, rest, boundary)?,
+        Start::Harmonic => harmonic_around(mesh, rest, boundary, holes)?,
+        Start::Tutte => tutte_around(mesh, rest, boundary, holes)?,
         Start::Lscm => lscm(mesh, rest, boundary)?,
         Start::Random => (0..mesh.positions.len() as u64)
             .map(|v| DVec2::new(uniform(seed, 2 * v), uniform(seed, 2 * v + 1)))
@@ -54,4 +57,40 @@ pub(super) fn start(
         Start::Collapsed => vec![DVec2::ZERO; mesh.positions.len()],
     };
     Ok((map, kind))
+}
+
+/// The start of every chart, in the scale where all of them have unit area, all in the same place; and which
+/// one `Automatic` became (Tutte's, where it did for one of them).
+pub(super) fn start(
+    kind: Start,
+    seed: u32,
+    atlas: &Atlas,
+    rest: &RestShape,
+    scale: f64,
+) -> Result<(Vec<DVec2>, Start), BuildError> {
+    if let [chart] = &atlas.charts[..] {
+        return of_chart(kind, seed, &atlas.mesh, rest, &chart.outline, &chart.holes);
+    }
+    let mut all = Vec::with_capacity(atlas.mesh.positions.len());
+    let mut became = match kind {
+        Start::Automatic => Start::Harmonic,
+        kind => kind,
+    };
+    for chart in &atlas.charts {
+        let (mesh, _) = part(&atlas.mesh, &chart.triangles);
+        let rest = RestShape::of_surface(&mesh, scale)?;
+        let own = |list: &Vec<u32>| -> Vec<u32> {
+            list.iter().map(|v| v - chart.vertices.start).collect()
+        };
+        let holes: Vec<Vec<u32>> = chart.holes.iter().map(own).collect();
+        let outline = own(&chart.outline);
+        let seed = seed.wrapping_add(chart.vertices.start);
+        let (map, used) = of_chart(kind, seed, &mesh, &rest, &outline, &holes)?;
+        if kind == Start::Automatic && used == Start::Tutte {
+            became = used;
+        }
+        let side = rest.measure.iter().sum::<f64>().sqrt();
+        all.extend(map.into_iter().map(|p| side * p));
+    }
+    Ok((all, became))
 }

@@ -165,6 +165,40 @@ describe('core', () => {
     thrown('invalid-argument', () => core.generate('torus', NaN));
   });
 
+  it('flattens several pieces, each to a chart of its own', () => {
+    const positions = new Float64Array([...square.positions, ...[...square.positions].map((x) => x + 5)]);
+    const indices = new Uint32Array([...square.indices, ...[...square.indices].map((v) => v + square.positions.length / 3)]);
+    using_(core.mesh({ positions, indices }), (mesh) => using_(core.parameterize(mesh), (solver) => {
+      for (let step = solver.start; step.status === 'running';) step = solver.step();
+      assert.ok(solver.notes.includes('2 pieces, a chart for each'), solver.notes.join());
+      const { certificate } = solver.result();
+      assert.ok(certificate.globallyInjective);
+      assert.ok(Math.abs(certificate.symmetricDirichlet - 1) < 1e-6);
+    }));
+  });
+
+  it('holds and pulls landmarks', () => {
+    using_(core.generate('bumpy-cap', 400), (mesh) => {
+      const places = [[0, [10, 0]], [7, [10.5, 0.2]]];
+      const run = (hard) => {
+        const landmarks = places.map(([vertex, uv]) => ({ vertex, uv, hard }));
+        return using_(core.parameterize(mesh, { method: 'wrapd+cm', landmarks }), (solver) => {
+          for (let step = solver.start; step.status === 'running';) step = solver.step();
+          const { uv } = solver.result();
+          return Math.max(...places.map(([v, [x, y]]) => Math.hypot(uv[2 * v] - x, uv[2 * v + 1] - y)));
+        });
+      };
+      assert.ok(run(true) < 1e-12);
+      const pulled = run(false);
+      assert.ok(pulled > 1e-12 && pulled < 0.3, `${pulled}`);
+      const one = (landmark) => () => core.parameterize(mesh, { landmarks: [landmark] });
+      thrown('invalid-option', one({ vertex: 1e6, uv: [0, 0] }));
+      thrown('invalid-argument', one({ vertex: 0, uv: [0] }));
+      thrown('invalid-argument', one({ vertex: -1, uv: [0, 0] }));
+      thrown('invalid-argument', () => core.parameterize(mesh, { landmarks: 5 }));
+    });
+  });
+
   it('refuses bad meshes with a typed error and goes on working', () => {
     const bad = (positions, indices) =>
       core.mesh({ positions: new Float64Array(positions), indices: new Uint32Array(indices) });
@@ -176,7 +210,6 @@ describe('core', () => {
     attempt('duplicate-face', bad(corners, [0, 1, 2, 1, 2, 0]));
     attempt('zero-area', bad([0, 0, 0, 1, 0, 0, 2, 0, 0], [0, 1, 2]));
     attempt('non-manifold-edge', bad([...corners, 0, 0, 1], [0, 1, 2, 0, 2, 3, 0, 2, 4]));
-    attempt('several-components', bad([...corners, ...corners.map((x) => x + 5)], [0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7]));
     thrown('invalid-argument', () => using_(core.mesh(square), (mesh) => core.check(mesh, new Float64Array(3))));
     using_(core.mesh(square), (mesh) => core.parameterize(mesh).free());
   });

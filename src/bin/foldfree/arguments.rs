@@ -52,9 +52,12 @@ pub struct Parameterize {
     /// Where the iterative methods start.
     #[arg(long, default_value = "automatic", value_parser = names::<Start>(STARTS))]
     pub start: Start,
-    /// Refuse a surface that is not a disk instead of cutting it.
+    /// Refuse a piece of a surface that is not a disk instead of cutting it.
     #[arg(long)]
     pub no_cut: bool,
+    /// Keep holes as they are, and cut only what has handles or no boundary.
+    #[arg(long, conflicts_with = "no_cut")]
+    pub keep_holes: bool,
     /// Stop after this many iterations; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = ParameterizationOptions::default().max_iterations)]
     pub iterations: usize,
@@ -367,10 +370,10 @@ impl Parameterize {
             method,
             energy: self.energy,
             start: self.start,
-            cut: if self.no_cut {
-                CutPolicy::Refuse
-            } else {
-                CutPolicy::Cut
+            cut: match (self.no_cut, self.keep_holes) {
+                (true, _) => CutPolicy::Refuse,
+                (false, true) => CutPolicy::KeepHoles,
+                (false, false) => CutPolicy::Cut,
             },
             tolerance: self.tolerance,
             max_iterations: self.iterations,

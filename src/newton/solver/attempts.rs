@@ -111,7 +111,7 @@ impl Newton {
         add(local, 1, clock);
         let clock = Stopwatch::start();
         let factored = match kept > 0.0 {
-            true => self.system.factorize_as_is(self.turning()).map(|()| 1),
+            true => self.system.factorize_as_is(&self.turning()).map(|()| 1),
             false => self.system.factorize(at_least),
         };
         add(factor, factored.unwrap_or(1), clock);
@@ -140,26 +140,28 @@ impl Newton {
         Ok(Tried { found, decrement })
     }
 
-    /// Where the plane can still turn about its only pin: the free vertex that is furthest from it, and the
-    /// direction in which it would move. The Hessian says nothing of this turn but rounding errors.
-    fn turning(&self) -> Option<(usize, [f64; 2])> {
-        let (free, pins) = self.x.split_at(self.unknowns);
-        if self.evaluation.shape.dimension != 2
-            || pins.len() != 2
-            || self.evaluation.terms.is_some()
-        {
-            return None;
-        }
-        let away = |p: &[f64; 2]| [p[0] - pins[0], p[1] - pins[1]];
-        let length = |a: [f64; 2]| (a[0] * a[0] + a[1] * a[1]).sqrt();
-        let mut furthest = (0, [0.0; 2]);
-        for (vertex, p) in free.as_chunks::<2>().0.iter().enumerate() {
-            if length(away(p)) > length(furthest.1) {
-                furthest = (vertex, away(p));
+    /// Where a piece of the plane can still turn about its only pin: its free vertex that is furthest from it, and
+    /// the direction in which that would move. The Hessian says nothing of this turn but rounding errors.
+    fn turning(&self) -> Vec<(usize, [f64; 2])> {
+        let (free, pinned) = self.x.split_at(self.unknowns);
+        let pins = pinned.as_chunks::<2>().0;
+        let mut furthest = vec![(0, [0.0; 2], 0.0); self.only_pins.len()];
+        if !self.only_pins.is_empty() {
+            for (vertex, p) in free.as_chunks::<2>().0.iter().enumerate() {
+                let piece = self.piece[vertex] as usize;
+                let Some(&pin) = self.only_pins.get(piece) else {
+                    continue;
+                };
+                let pin = pins[pin as usize];
+                let arm = [p[0] - pin[0], p[1] - pin[1]];
+                let length = (arm[0] * arm[0] + arm[1] * arm[1]).sqrt();
+                if length > furthest[piece].2 {
+                    furthest[piece] = (vertex, arm, length);
+                }
             }
         }
-        let (vertex, arm) = furthest;
-        let l = length(arm);
-        (l > 0.0).then(|| (vertex, [-arm[1] / l, arm[0] / l]))
+        let far = furthest.into_iter().filter(|&(_, _, l)| l > 0.0);
+        far.map(|(vertex, arm, l)| (vertex, [-arm[1] / l, arm[0] / l]))
+            .collect()
     }
 }
