@@ -89,7 +89,8 @@ describe('comparing', () => {
     assert.equal(Number(rows.at(-1)[3]), cm.last.energy);
     const trace = JSON.parse((await download(page, '#export-trace')).bytes.toString());
     assert.deepEqual(trace.solvers.map(({ method }) => method), ['wrapd+cm', 'cm']);
-    // what has been solved is played again
+    // what has been solved is played again, slowly enough to be seen
+    await page.selectOption('#pace', '4');
     await page.click('#play');
     await page.waitForFunction(() => globalThis.foldfreePage.shown > 0 && globalThis.foldfreePage.shown < globalThis.foldfreePage.session.moments.length - 1);
   });
