@@ -429,3 +429,52 @@ fn second_order_methods() {
     let ran = folder.run(&cloth).ends(1);
     assert!(ran.stderr.contains("option method"), "{ran:#?}");
 }
+
+#[test]
+fn landmarks_and_pieces() {
+    let folder = Folder::new("landmarks");
+    folder
+        .run(&[
+            "generate",
+            "bumpy-cap",
+            "--triangles",
+            "400",
+            "--out",
+            "cap.obj",
+        ])
+        .ends(0);
+    folder.write("corners.txt", "# vertex, u, v\n0 10 0\n7 10.5 0.2\n");
+    let line = "parameterize cap.obj --method wrapd+cm --landmarks corners.txt --out map.obj";
+    folder.foldfree(line).ends(0);
+    folder.foldfree(&format!("{line} --hard")).ends(0);
+    let map = String::from_utf8(folder.read("map.obj")).unwrap();
+    let place = |u: f64, v: f64| {
+        map.lines()
+            .filter_map(|line| line.strip_prefix("vt "))
+            .any(|line| {
+                let numbers: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
+                (numbers[0] - u).abs() + (numbers[1] - v).abs() < 1e-9
+            })
+    };
+    assert!(place(10.0, 0.0) && place(10.5, 0.2));
+    for (contents, words) in [
+        ("0 1 2\n9999 0 0\n", "line 2"),
+        ("0 1 2\n0 3 4\n", "vertex 0 has two places"),
+        ("0 1 2 3\n", "two coordinates"),
+    ] {
+        folder.write("corners.txt", contents);
+        folder.foldfree(line).fails(&[words]);
+    }
+    folder
+        .foldfree("parameterize cap.obj --hard")
+        .fails(&["--landmarks"]);
+
+    let two = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 1\nv 6 0 0\nv 5 1 0\nf 1 2 3\nf 4 5 6\n";
+    folder.write("two.obj", two);
+    let ran = folder.foldfree("parameterize two.obj --keep-holes --report two.json");
+    assert!(ran.ends(0).stdout.contains("2 pieces, a chart for each"));
+    assert_eq!(
+        json(&folder, "two.json")["certificate"]["globally_injective"],
+        true
+    );
+}
