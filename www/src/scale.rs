@@ -185,7 +185,7 @@ mod tests {
                 .map(move |t| time_tick(t, end))
         };
         assert_eq!(ticks(0.047).collect::<Vec<_>>(), ["0", "20 ms", "40 ms"]);
-        assert_eq!(ticks(0.7).last().as_deref(), Some("600 ms"));
+        assert_eq!(ticks(0.7).next_back().as_deref(), Some("600 ms"));
         assert_eq!(ticks(3.0).collect::<Vec<_>>(), ["0", "1 s", "2 s", "3 s"]);
         assert_eq!(whole(1234), "1234");
         assert_eq!(whole(1_234_567), "1\u{a0}234\u{a0}567");
