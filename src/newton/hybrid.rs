@@ -33,7 +33,8 @@ pub struct Hybrid {
 }
 
 impl Hybrid {
-    /// WRAPD, then composite majorization, for the symmetric Dirichlet energy of a planar map.
+    /// WRAPD, then composite majorization, for the symmetric Dirichlet energy of a planar map; triangles turn along
+    /// its steps ([`NewtonOptions::turning`]).
     ///
     /// # Errors
     /// As [`Wrapd::new`]; the start may be inverted.
