@@ -1,7 +1,7 @@
 // npm run bench: native, wasm and wasm with threads on the same problems in the same run. Surfaces are flattened, also
 // by the peers that are installed (libigl by pip, watlas by npm); solids are deformed; mixed-integer problems are solved
-// natively only.
-// node scripts/bench.mjs [--only surfaces|solids|miqp] [--iterations N] [--threads N] [--quick] [--json FILE]
+// natively only, and so is the way to the minimum of second-order methods.
+// node scripts/bench.mjs [--only surfaces|solids|miqp|minimum] [--iterations N] [--threads N] [--quick] [--json FILE]
 //   [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000] [--systems FOLDER]
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { cpus, tmpdir } from 'node:os';
@@ -58,10 +58,16 @@ const KINDS = {
     const measured = measureMiqp(bench, { folder: values.systems, quick });
     return { ...measured, text: miqpTables(measured) };
   },
+  minimum: async (bench) => {
+    const { measureMinimum, minimumTables } = await import('./bench/minimum.mjs');
+    const sizes = values.sizes.split(',').filter(Boolean);
+    const measured = await measureMinimum(bench, { folder: values.meshes, sizes, quick });
+    return { ...measured, text: minimumTables(measured) };
+  },
 };
 
 /** Kinds that need neither the package nor a browser. */
-const NATIVE = new Set(['miqp']);
+const NATIVE = new Set(['miqp', 'minimum']);
 
 main(async () => {
   const { only } = values;

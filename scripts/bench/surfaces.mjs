@@ -9,7 +9,7 @@ import { figuresOf, inBrowser, reportsOf } from './programs.mjs';
 import { digits, ratio, table } from './table.mjs';
 
 /** The meshes: files of the folder, if there is one, and generated ones of every size. */
-function meshes({ native, work }, folder, sizes) {
+export function meshes({ native, work }, folder, sizes) {
   const found = [];
   if (existsSync(folder)) {
     for (const file of readdirSync(folder).filter((name) => /\.obj(\.gz)?$/.test(name)).sort()) {
