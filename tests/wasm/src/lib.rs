@@ -23,7 +23,8 @@ pub fn options(entries: &[(&str, JsValue)]) -> JsValue {
 pub fn flatten(shape: &str, triangles: usize, steps: u32) -> (WasmMesh, WasmParameterization) {
     let mesh = WasmMesh::generate(shape, triangles).expect("a known shape");
     let options = options(&[("maxIterations", steps.into())]);
-    let mut solver = WasmParameterization::new(&mesh, &options).expect("a good mesh");
+    let mut solver =
+        WasmParameterization::new(&mesh, &options, &[], &[], &[]).expect("a good mesh");
     for _ in 0..steps {
         let report: JsValue = solver.step().expect("a step");
         if Reflect::get(&report, &"status".into()) != Ok("running".into()) {
