@@ -7,6 +7,31 @@ use crate::space::{Components, Space};
 use crate::wrapd::block::{Block, Row};
 use core::marker::PhantomData;
 
+/// How much of the elements' Hessians is in their matrices.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Share {
+    /// Along curves on which elements turn, of what resists their turn: from 0, where they turn freely with all
+    /// that is done to them, to 1. Where curves are straight it is 1.
+    pub resistance: f64,
+    /// Of what is negative: from 0 to 1.
+    pub negative: f64,
+}
+
+impl Share {
+    /// Positive semidefinite.
+    pub fn semidefinite(resistance: f64) -> Self {
+        Self {
+            resistance,
+            negative: 0.0,
+        }
+    }
+
+    /// Can the matrices be indefinite?
+    pub fn is_indefinite(self) -> bool {
+        self.resistance * self.negative > 0.0
+    }
+}
+
 /// Matrices of the elements: their Hessians, with all or a part or nothing of what is negative in them.
 pub trait Curvature: Send + Sync {
     /// Of the first `count` elements of a block at the F of its last evaluation, times the measure: element
@@ -15,8 +40,8 @@ pub trait Curvature: Send + Sync {
     fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]);
     /// The same along curves on which elements turn, with what [`super::turns`] has to say of each of them:
     /// that of straight lines where the method knows no others.
-    fn fill_turning(&self, block: &Block, _: &Row, count: usize, kept: f64, out: &mut [f64]) {
-        self.fill(block, count, kept, out);
+    fn fill_turning(&self, block: &Block, _: &Row, count: usize, share: Share, out: &mut [f64]) {
+        self.fill(block, count, share.negative, out);
     }
     /// Does `kept` make a difference?
     fn has_negative(&self) -> bool;

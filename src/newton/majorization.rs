@@ -13,8 +13,15 @@
 //!
 //! The eigenvectors of ∇²|α| and of the rest being perpendicular, for this energy the result is its projected
 //! Hessian, at a fraction of the cost.
+//!
+//! Along curves on which triangles turn (see [`turns`](super::turns)) a bent strip is stiffer in this than it is: what
+//! is stretched across it resists a turn, what is pressed together is left out, though the two cancel. There α and β
+//! turn at the rates ω = a/|α| and b/|β|, where a and b are how fast they go perpendicularly to themselves; the third
+//! and the fourth term are τ a² + φ b². A triangle that turns freely, and what is done to it with it, has neither a
+//! resistance τ nor one of β to a turn with α: of the two is left φ (b − |β| a/|α|)², which is positive
+//! semidefinite, and the second derivative of the energy of F̂(t). The matrix is a mean of the two.
 
-use super::curvature::{Curvature, stride};
+use super::curvature::{Curvature, Share, stride};
 use crate::space::{Components, Lane, Pack, dispatch};
 use crate::wrapd::block::{BLOCK, Block, Row, load};
 use pulp::{Simd, WithSimd};
@@ -34,7 +41,11 @@ impl Curvature for CompositeMajorization {
     }
 
     fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
-        self.fill_turning(block, &[0.0; BLOCK], count, kept, out);
+        let share = Share {
+            resistance: 1.0,
+            negative: kept,
+        };
+        self.fill_turning(block, &[0.0; BLOCK], count, share, out);
     }
 
     fn fill_turning(
@@ -42,7 +53,7 @@ impl Curvature for CompositeMajorization {
         block: &Block,
         unbalanced: &Row,
         count: usize,
-        kept: f64,
+        share: Share,
         out: &mut [f64],
     ) {
         debug_assert_eq!(stride(2), ENTRIES);
@@ -50,7 +61,7 @@ impl Curvature for CompositeMajorization {
             block,
             unbalanced,
             count,
-            kept,
+            share,
             out,
         });
     }
@@ -61,8 +72,7 @@ struct Kernel<'a> {
     /// ∇λ : F, see [`super::turns`].
     unbalanced: &'a Row,
     count: usize,
-    /// Of the factor of ∇²|α|, where it is negative.
-    kept: f64,
+    share: Share,
     out: &'a mut [f64],
 }
 
@@ -78,9 +88,13 @@ fn polar_form<L: Lane>(z: [L; 2]) -> (L, L, [L; 2]) {
 }
 
 /// The factors of the eigenmatrices at F (by columns): of ∇|α| and ∇|β| with themselves, of the one with the
-/// other, of ∇²|α| and of ∇²|β|, and the directions of α and β.
+/// other, of ∇²|α| and of ∇²|β|, of the turn of α with that of β, and the directions of α and β.
 #[inline(always)]
-fn factors<L: Lane>([a, c, b, d]: [L; 4], unbalanced: L, kept: L) -> ([L; 4], [[L; 2]; 2]) {
+fn factors<L: Lane>(
+    [a, c, b, d]: [L; 4],
+    unbalanced: L,
+    [resistance, negative]: [L; 2],
+) -> ([L; 5], [[L; 2]; 2]) {
     let half = a.lift(0.5);
     let alpha = [half * (a + d), half * (c - b)];
     let beta = [half * (a - d), half * (c + b)];
@@ -94,14 +108,18 @@ fn factors<L: Lane>([a, c, b, d]: [L; 4], unbalanced: L, kept: L) -> ([L; 4], [[
     // ψ'' of the two
     let (stiff_large, stiff_small) = (two + six * il2 * il2, two + six * is2 * is2);
     let push = four * p - two * (il * il2 + is * is2) - unbalanced * inverse_p;
-    let twist = push.max(kept * push) * inverse_p;
     let flip = four + four * (large * large + large * small + small * small) * il * il2 * is * is2;
+    // ∇²|β| as seen from where α has turned to
+    let ratio = r * inverse_p;
+    let free = (resistance - a.lift(1.0)) * flip * ratio;
+    let twist = resistance * push.max(negative * push) * inverse_p - free * ratio;
     (
         [
             stiff_large + stiff_small,
             stiff_large - stiff_small,
             twist,
             flip,
+            free,
         ],
         [alpha, beta],
     )
@@ -116,10 +134,10 @@ impl WithSimd for Kernel<'_> {
             block,
             unbalanced,
             count,
-            kept,
+            share,
             out,
         } = self;
-        let kept = Pack::splat(simd, kept);
+        let share = [share.resistance, share.negative].map(|s| Pack::splat(simd, s));
         let width = Pack::<V>::WIDTH;
         let zero = Pack::splat(simd, 0.0);
         let half = Pack::splat(simd, 0.5);
@@ -131,9 +149,9 @@ impl WithSimd for Kernel<'_> {
             let f: [Pack<V>; 4] = load(simd, &block.gradient, at);
             let [area]: [Pack<V>; 1] = load(simd, &block.measure, at);
             let inverse: [Pack<V>; 4] = load(simd, &block.inverse, at);
-            let ([same, cross, twist, flip], [alpha, beta]) =
-                factors(f, Pack::load(simd, &unbalanced[at..at + width]), kept);
-            let [same, cross, twist, flip] = [area * same, area * cross, area * twist, area * flip];
+            let (factors, [alpha, beta]) =
+                factors(f, Pack::load(simd, &unbalanced[at..at + width]), share);
+            let [same, cross, twist, flip, free] = factors.map(|f| area * f);
             // a vertex that moves by y changes α by y ḡ/2 and β by y g/2, as complex numbers: what y is
             // multiplied with along the directions of α and β
             let (g1, g2) = ([inverse[0], inverse[2]], [inverse[1], inverse[3]]);
@@ -157,7 +175,8 @@ impl WithSimd for Kernel<'_> {
                 for &[c, d] in &along[..=u] {
                     let p = [same * c[0] + cross * d[0], same * c[1] + cross * d[1]];
                     let q = [same * d[0] + cross * c[0], same * d[1] + cross * c[1]];
-                    let (t, w) = ([twist * c[0], twist * c[1]], [flip * d[0], flip * d[1]]);
+                    let t = [twist * c[0] + free * d[0], twist * c[1] + free * d[1]];
+                    let w = [flip * d[0] + free * c[0], flip * d[1] + free * c[1]];
                     // the perpendicular (−y, x) of each for twist and flip
                     let k = [
                         a[0] * p[0] + b[0] * q[0] + a[1] * t[1] + b[1] * w[1],

@@ -1,12 +1,12 @@
 //! The closed form of composite majorization against the eigensystems, and against differences of energies.
 
-use super::curvature::{Curvature, OnCorners, Projected, stride};
+use super::curvature::{Curvature, OnCorners, Projected, Share, stride};
 use super::majorization::CompositeMajorization;
 use crate::energy::{Arap, Energy, SymmetricDirichlet};
 use crate::geometry::RestShape;
 use crate::space::{Plane, Solid, Space};
 use crate::wrapd::Linear;
-use crate::wrapd::block::Block;
+use crate::wrapd::block::{BLOCK, Block};
 use crate::wrapd::elements::Shape;
 use crate::wrapd::layout::build_blocks;
 use core::marker::PhantomData;
@@ -44,6 +44,22 @@ fn block<S: Space, E: Energy<S>>(energy: &E, inverse: &[f64], measure: f64, f: &
 fn matrix(curvature: &dyn Curvature, block: &Block, d: usize, kept: f64) -> Vec<Vec<f64>> {
     let mut entries = vec![0.0; stride(d)];
     curvature.fill(block, 1, kept, &mut entries);
+    full(&entries, d)
+}
+
+/// That of a triangle without unbalanced stress, along curves.
+fn turning(block: &Block, resistance: f64, negative: f64) -> Vec<Vec<f64>> {
+    let mut entries = vec![0.0; stride(2)];
+    let share = Share {
+        resistance,
+        negative,
+    };
+    CompositeMajorization.fill_turning(block, &[0.0; BLOCK], 1, share, &mut entries);
+    full(&entries, 2)
+}
+
+/// The matrix of one element.
+fn full(entries: &[f64], d: usize) -> Vec<Vec<f64>> {
     let n = d * (d + 1);
     let mut out = vec![vec![0.0; n]; n];
     let mut blocks = entries.chunks_exact(d * d);
@@ -187,5 +203,89 @@ fn exact_matrices_are_second_derivatives() {
             (found - expected).abs() <= 1e-4 * size,
             "{found} {expected}"
         );
+    }
+}
+
+/// F̂(t) of [`super::turns`]: F + t D, turned back from where its part without D's turn has not gone, and on.
+fn turned(f: [f64; 4], change: [f64; 4], t: f64) -> [f64; 4] {
+    let [a, c, b, d] = f;
+    let alpha = [a + d, c - b];
+    let rate = [change[0] + change[3], change[1] - change[2]];
+    let square = alpha[0] * alpha[0] + alpha[1] * alpha[1];
+    let omega = (alpha[0] * rate[1] - alpha[1] * rate[0]) / square;
+    let (sin, cos) = (omega * t).sin_cos();
+    let quarter = [-c, a, -d, b];
+    let within: [f64; 4] = core::array::from_fn(|i| f[i] + t * (change[i] - omega * quarter[i]));
+    let turn = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];
+    let ([a, c], [b, d]) = (turn(within[0], within[1]), turn(within[2], within[3]));
+    [a, c, b, d]
+}
+
+#[test]
+fn a_triangle_that_turns_freely_has_the_second_derivative_along_its_curve() {
+    let mut random = Random(4);
+    for stretch in [[1.0, 1.0], [1.3, 0.8], [0.7, 0.6], [2.0, 0.9], [0.5, 0.3]] {
+        for _ in 0..20 {
+            let inverse = [random.next(), random.next(), random.next(), random.next()];
+            let f = gradient(3.0 * random.next(), stretch, 3.0 * random.next());
+            let b = block::<Plane, _>(&SymmetricDirichlet, &inverse, 0.5, &f);
+            let free = turning(&b, 0.0, 0.0);
+            let y: [f64; 6] = core::array::from_fn(|_| random.next());
+            let change: [f64; 4] = core::array::from_fn(|k| {
+                let (column, i) = (k / 2, k % 2);
+                let moved = |v: usize| (y[2 * v + i] - y[i]) * inverse[2 * column + v - 1];
+                moved(1) + moved(2)
+            });
+            let at = |t: f64| -> f64 {
+                let f = turned(f, change, t);
+                let stretches: [f64; 2] = <Plane as Space>::svd(f).0;
+                0.5 * Energy::<Plane>::density(&SymmetricDirichlet, stretches)
+            };
+            let h = 1e-4;
+            let expected = (at(h) - 2.0 * at(0.0) + at(-h)) / (h * h);
+            let found = product(&free, &y);
+            let size = free.iter().flatten().fold(1.0, |m: f64, x| m.max(x.abs()));
+            assert!(
+                (found - expected).abs() <= 1e-4 * size,
+                "{stretch:?}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_triangle_that_turns_freely_resists_no_turn_and_is_semidefinite() {
+    let mut random = Random(5);
+    for stretch in STRETCHES {
+        let inverse = [random.next(), random.next(), random.next(), random.next()];
+        let f = gradient(3.0 * random.next(), stretch, 3.0 * random.next());
+        let b = block::<Plane, _>(&SymmetricDirichlet, &inverse, 1.0, &f);
+        let free = turning(&b, 0.0, 0.0);
+        let size = free.iter().flatten().fold(0.0, |m: f64, x| m.max(x.abs()));
+        // edges from the first corner: F M, M the inverse of the inverse
+        let [p, q, r, s] = inverse;
+        let determinant = p * s - q * r;
+        let edge = |x: f64, y: f64| {
+            [
+                (f[0] * x + f[2] * y) / determinant,
+                (f[1] * x + f[3] * y) / determinant,
+            ]
+        };
+        let ([ax, ay], [bx, by]) = (edge(s, -q), edge(-r, p));
+        let turn = [0.0, 0.0, -ay, ax, -by, bx];
+        let long: f64 = turn.iter().map(|x| x * x).sum();
+        assert!(product(&free, &turn).abs() <= 1e-11 * size * long);
+        for resistance in [0.0, 0.1, 0.7, 1.0] {
+            let m = turning(&b, resistance, 0.0);
+            let (exact, indefinite) = (turning(&b, 1.0, 1.0), turning(&b, resistance, 1.0));
+            for _ in 0..30 {
+                let y: [f64; 6] = core::array::from_fn(|_| random.next());
+                assert!(product(&m, &y) >= -1e-12 * size);
+                let mean =
+                    resistance * product(&exact, &y) + (1.0 - resistance) * product(&free, &y);
+                let found = product(&indefinite, &y);
+                assert!((found - mean).abs() <= 1e-12 * size, "{found} {mean}");
+            }
+        }
     }
 }

@@ -68,6 +68,8 @@ pub struct Newton {
     near: bool,
     /// The part of what is negative that the next matrix is to keep.
     kept: f64,
+    /// The part of what resists turning in the next semidefinite matrix.
+    resistance: f64,
     yardstick: Yardstick,
     /// The reported energy without its offset.
     energy: f64,
@@ -202,6 +204,7 @@ impl Newton {
             direction: vec![0.0; length],
             near: false,
             kept: FIRST_PART,
+            resistance: 1.0,
             yardstick,
             energy: f64::INFINITY,
             report: StepReport::at_start(),

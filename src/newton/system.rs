@@ -1,7 +1,7 @@
 //! The matrix of a step and its factor.
 
 use super::NewtonOptions;
-use super::curvature::{Curvature, stride};
+use super::curvature::{Curvature, Share, stride};
 use crate::geometry::{Elimination, RestShape};
 use crate::linalg::{BlockSum, Cholesky, NotPositiveDefinite};
 use crate::optim::BuildError;
@@ -96,7 +96,7 @@ impl NewtonSystem {
         evaluation: &Evaluation,
         curvature: &dyn Curvature,
         unbalanced: Option<&[Row]>,
-        kept: f64,
+        share: Share,
     ) {
         let d = evaluation.shape.dimension;
         let elements = evaluation.elements();
@@ -104,8 +104,8 @@ impl NewtonSystem {
         parallel::for_each_chunk(&mut self.blocks, BLOCK * stride(d), |i, out| {
             let count = BLOCK.min(elements - i * BLOCK);
             match unbalanced {
-                Some(rows) => curvature.fill_turning(&blocks[i], &rows[i], count, kept, out),
-                None => curvature.fill(&blocks[i], count, kept, out),
+                Some(rows) => curvature.fill_turning(&blocks[i], &rows[i], count, share, out),
+                None => curvature.fill(&blocks[i], count, share.negative, out),
             }
         });
         let springs = evaluation.terms.as_ref().map(|t| &t.spring_stiffness);

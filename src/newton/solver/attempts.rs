@@ -2,6 +2,7 @@
 
 use super::Newton;
 use super::search::Found;
+use crate::newton::curvature::Share;
 use crate::optim::vectors::{dot, set_combination};
 use crate::optim::{Phase, SolveError, Stopwatch};
 
@@ -42,17 +43,27 @@ impl Newton {
         self.evaluation.shape.constants.scale * dot(direction, &self.gradient)
     }
 
-    /// The step with a part, the larger the better, of what is negative in the Hessians of the elements, as long
-    /// as their sum is positive definite: all of it makes it Newton's.
+    /// The step with a part, the larger the better, of what is negative in the Hessians of the elements (where they
+    /// turn, of all that resists it), as long as their sum is positive definite: all of it makes it Newton's.
     pub(super) fn indefinite(
         &mut self,
         iteration: usize,
         phases: &mut [Phase; 4],
     ) -> Result<Tried, SolveError> {
-        for part in 0..MOST_PARTS {
-            let tried = self.attempt(self.kept, 0.0, iteration, phases)?;
+        for attempt in 0..MOST_PARTS {
+            let share = match self.turns.is_some() {
+                true => Share {
+                    resistance: self.kept,
+                    negative: 1.0,
+                },
+                false => Share {
+                    resistance: 1.0,
+                    negative: self.kept,
+                },
+            };
+            let tried = self.attempt(share, 0.0, iteration, phases)?;
             if tried.found.is_some() {
-                if part == 0 {
+                if attempt == 0 {
                     self.kept = (self.kept * PARTS_GROWTH).min(1.0);
                 }
                 return Ok(tried);
@@ -72,10 +83,11 @@ impl Newton {
         iteration: usize,
         phases: &mut [Phase; 4],
     ) -> Result<Tried, SolveError> {
+        let share = Share::semidefinite(self.resistance);
         let mut at_least = self.system.next_shift();
         let mut attempts = 0;
         loop {
-            let tried = self.attempt(0.0, at_least, iteration, phases)?;
+            let tried = self.attempt(share, at_least, iteration, phases)?;
             attempts += 1;
             let visible = tried.decrement.abs() > self.resolution();
             let again = visible && attempts <= MOST_SHIFTS && self.system.shift() < 1.0;
@@ -87,11 +99,10 @@ impl Newton {
         }
     }
 
-    /// One matrix, its factor, and a line search; finds nothing if what is kept of the negative parts
-    /// makes the sum indefinite.
+    /// One matrix, its factor, and a line search; finds nothing if the sum is indefinite.
     pub(super) fn attempt(
         &mut self,
-        kept: f64,
+        share: Share,
         at_least: f64,
         iteration: usize,
         phases: &mut [Phase; 4],
@@ -107,16 +118,16 @@ impl Newton {
             .as_mut()
             .map(|turns| turns.unbalanced(&self.evaluation, &self.gradient));
         self.system
-            .assemble(&self.evaluation, &*self.curvature, unbalanced, kept);
+            .assemble(&self.evaluation, &*self.curvature, unbalanced, share);
         add(local, 1, clock);
         let clock = Stopwatch::start();
-        let factored = match kept > 0.0 {
+        let factored = match share.is_indefinite() {
             true => self.system.factorize_as_is(&self.turning()).map(|()| 1),
             false => self.system.factorize(at_least),
         };
         add(factor, factored.unwrap_or(1), clock);
         match factored {
-            Err(_) if kept > 0.0 => return Ok(Tried::default()),
+            Err(_) if share.is_indefinite() => return Ok(Tried::default()),
             Err(error) => {
                 let pivot = error.pivot;
                 return Err(SolveError::NotPositiveDefinite { iteration, pivot });

@@ -17,6 +17,19 @@ const MOST_SHRINKING: f64 = 0.2;
 /// Steps as near as this to the minimum of the parabola are near enough.
 const NEAR_ENOUGH: [f64; 2] = [0.6, 1.5];
 
+/// A matrix is too stiff if the minimum is this many steps away, and too soft if this part of one.
+const TOO_STIFF: f64 = 1.5;
+const TOO_SOFT: f64 = 0.6;
+
+/// By how much a triangle's resistance to turns is then made less, or more;
+const LESS: f64 = 0.25;
+
+/// less than this is none,
+const LEAST_RESISTANCE: f64 = 0.02;
+
+/// and more than none is this.
+const SOME_RESISTANCE: f64 = 0.05;
+
 impl Newton {
     /// As [`Self::search`], along the curve if elements turn far, and if that finds anything.
     pub(super) fn search_turning(&mut self, slope: f64) -> (Option<Found>, u32) {
@@ -60,6 +73,9 @@ impl Newton {
                 }
             }
             let ratio = self.vertex_of_parabola(t, slope, value) / t;
+            if trials == 1 {
+                self.adapt(ratio);
+            }
             let near = (NEAR_ENOUGH[0]..NEAR_ENOUGH[1]).contains(&ratio);
             if best.is_some() && (near || !better) {
                 break;
@@ -79,6 +95,18 @@ impl Newton {
                 (found, trials + more)
             }
         }
+    }
+
+    /// Lets triangles turn more freely, or less so, in the next semidefinite matrix, from how long the last step should
+    /// have been.
+    fn adapt(&mut self, ratio: f64) {
+        let resistance = self.resistance;
+        self.resistance = match ratio {
+            r if r > TOO_STIFF && resistance * LESS < LEAST_RESISTANCE => 0.0,
+            r if r > TOO_STIFF => resistance * LESS,
+            r if r < TOO_SOFT => (resistance / LESS).clamp(SOME_RESISTANCE, 1.0),
+            _ => resistance,
+        };
     }
 
     /// Where the parabola with the energy and this slope at 0 and that value at t is least; infinite where it
