@@ -174,6 +174,7 @@ impl Body<'_> {
         let solver = new(problem)?;
         Ok(Deformation {
             rest: None,
+            flat: None,
             level: 0.0,
             notes: self.notes,
             setup_seconds: self.clock.seconds(),

@@ -59,6 +59,11 @@ impl Deformation {
         let handles = (pins, targets);
         let mut made = build::<Plane, 3>((rest, start), &shape, handles, notes, options, clock)?;
         made.level = start[0].z;
+        let triangles = shape.vertices.as_chunks::<3>().0;
+        made.flat = Some(SurfaceMesh {
+            positions: rest.positions.clone(),
+            simplices: triangles.to_vec(),
+        });
         Ok(made)
     }
 }
@@ -105,6 +110,7 @@ fn build<S: Space, const K: usize>(
     solver.retarget(&moved, &springs)?;
     Ok(Deformation {
         rest: None,
+        flat: None,
         level: 0.0,
         notes,
         setup_seconds: clock.seconds(),

@@ -3,20 +3,22 @@
 use super::body::{Body, check};
 use super::{DeformationMethod, DeformationOptions, Material, Supports, Target};
 use crate::Error;
-use crate::certificate::SolidCertificate;
+use crate::certificate::{Certificate, SolidCertificate};
 use crate::energy::{
     Arap, Dirichlet, NeoHookean, StVenantKirchhoff, StableNeoHookean, SymmetricDirichlet,
 };
 use crate::geometry::RestShape;
-use crate::mesh::SolidMesh;
+use crate::mesh::{SolidMesh, SurfaceMesh};
 use crate::optim::{Deformer, Field, Solver, StepReport, Stopwatch};
 use crate::wrapd::External;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A deformation in progress.
 pub struct Deformation {
-    /// The solid at rest; none for a cloth.
+    /// The solid at rest; none for triangles.
     pub(super) rest: Option<SolidMesh>,
+    /// The triangles at rest, turned as the solver has them, where they are deformed in their plane.
+    pub(super) flat: Option<SurfaceMesh>,
     /// z, where the solver knows the plane only.
     pub(super) level: f64,
     pub(super) notes: Vec<String>,
@@ -169,6 +171,13 @@ impl Deformation {
     pub fn certificate(&self) -> Option<SolidCertificate> {
         let rest = self.rest.as_ref()?;
         Some(SolidCertificate::of_solid(rest, &self.positions()))
+    }
+    /// The same of triangles that are deformed in their plane; `None` for solids and cloth.
+    pub fn certificate_in_plane(&self) -> Option<Certificate> {
+        let rest = self.flat.as_ref()?;
+        let points = self.positions();
+        let points: Vec<DVec2> = points.iter().map(|p| p.truncate()).collect();
+        Some(Certificate::of_map(rest, &points))
     }
     /// Seconds that [`Self::new`] took.
     pub fn setup_seconds(&self) -> f64 {

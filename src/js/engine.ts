@@ -6,7 +6,7 @@ import { CoreDeformation, CoreSolid } from './solid-engine.js';
 import { guard } from './guard.js';
 import {
   dispose,
-  type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
+  type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type LimDeformOptions, type LimOptions, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
   type ParameterizeOptions, type Result, type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type SolverInfo,
   type Step, type StepReport, type Texture,
 } from './types.js';
@@ -216,9 +216,17 @@ export class Core {
     return guard(() => new CoreSolid(this.#bindings.WasmSolid.generate(name, tetrahedra)));
   }
 
-  /** Checks rest shape, start and handles, and builds the solver. */
-  deform(solid: CoreSolid, options: DeformOptions & { frames?: FramePrecision } = {}): CoreDeformation {
-    return CoreDeformation.make(this.#bindings, solid, options);
+  /**
+   * Checks rest shape, start and handles, and builds the solver: of a solid, or, by locally injective mappings, of
+   * the triangles of a mesh in a plane z = constant.
+   */
+  deform(body: CoreSolid, options?: DeformOptions & { frames?: FramePrecision }): CoreDeformation;
+  deform(body: CoreMesh, options?: LimDeformOptions & { frames?: FramePrecision }): CoreDeformation<Certificate>;
+  deform(
+    body: CoreSolid | CoreMesh, options: (DeformOptions | LimDeformOptions) & { frames?: FramePrecision } = {},
+  ): CoreDeformation | CoreDeformation<Certificate> {
+    if (body instanceof CoreMesh) return CoreDeformation.make<Certificate>(this.#bindings, { mesh: body }, options);
+    return CoreDeformation.make<SolidCertificate>(this.#bindings, { solid: body }, options);
   }
 
   /** Checks a deformation that came from anywhere: `positions` is n × 3, interleaved; `solid` is the rest shape. */
@@ -229,6 +237,11 @@ export class Core {
   /** The options of a deformation with the values they have when left out. */
   defaultDeformationOptions(): DeformationSettings {
     return guard(() => this.#bindings.defaultDeformationOptions());
+  }
+
+  /** The options of locally injective mappings with the values they have when left out. */
+  defaultLimOptions(): LimOptions {
+    return guard(() => this.#bindings.defaultLimOptions());
   }
 
   /** All options with the values they have when left out. */

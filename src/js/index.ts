@@ -6,7 +6,7 @@ import { Mesh, Solid } from './mesh.js';
 import { Deformation, Solver, abortable } from './solver.js';
 import {
   dispose,
-  type Certificate, type DeformOptions, type FramePrecision, type MeshData, type MeshFormat, type ParameterizeOptions,
+  type Certificate, type DeformOptions, type FramePrecision, type LimDeformOptions, type MeshData, type MeshFormat, type ParameterizeOptions,
   type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat,
 } from './types.js';
 
@@ -118,8 +118,15 @@ export class Foldfree {
     return new Solid(this.#client, id, await this.#client.call('generateSolid', { mesh: id, name, tetrahedra }));
   }
 
-  /** Checks rest shape, start and handles, and builds the solver: all that comes before the first step. */
-  async deform(solid: Solid, options: DeformOptions & CallOptions = {}): Promise<Deformation> {
+  /**
+   * Checks rest shape, start and handles, and builds the solver: all that comes before the first step. Of a solid, or, by
+   * locally injective mappings, of the triangles of a mesh in a plane z = constant.
+   */
+  deform(body: Solid, options?: DeformOptions & CallOptions): Promise<Deformation>;
+  deform(body: Mesh, options?: LimDeformOptions & CallOptions): Promise<Deformation<Certificate>>;
+  async deform(
+    body: Solid | Mesh, options: (DeformOptions | LimDeformOptions) & CallOptions = {},
+  ): Promise<Deformation | Deformation<Certificate>> {
     const { frames = 'f64', signal, terminateOnAbort = false, ...rest } = options;
     needHandles(rest);
     signal?.throwIfAborted();
@@ -127,12 +134,12 @@ export class Foldfree {
     const wait = abortable(client, signal, terminateOnAbort);
     const solver = client.newId();
     const make = async () => {
-      const id = await solid.inWorker();
+      const id = await body.inWorker();
       const { generation } = client;
       return { generation, info: await client.call('deform', { mesh: id, solver, options: rest, frames }) };
     };
     const { generation, info } = await wait(make());
-    return new Deformation(client, generation, solver, info, wait, signal);
+    return new Deformation(client, generation, solver, info, wait, signal) as Deformation | Deformation<Certificate>;
   }
 
   /**

@@ -1,7 +1,7 @@
 // What the client and the worker say to each other.
 import type { PlainError } from './error.js';
 import type {
-  Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
+  Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, LimDeformOptions, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
   SolidCertificate, SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
 } from './types.js';
 
@@ -29,11 +29,12 @@ export interface Calls {
   uploadSolid: [{ mesh: number; arrays: SolidArrays }, SolidInfo];
   generateSolid: [{ mesh: number; name: string; tetrahedra: number }, SolidInfo];
   writeSolid: [{ mesh: number; format: MeshFormat; positions: Float64Array | undefined }, Uint8Array];
-  deform: [{ mesh: number; solver: number; options: DeformOptions; frames: FramePrecision }, DeformInfo];
+  /** `mesh` is a solid, or a surface that lies in a plane. */
+  deform: [{ mesh: number; solver: number; options: DeformOptions | LimDeformOptions; frames: FramePrecision }, DeformInfo];
   setTargets: [{ solver: number; targets: Targets }, undefined];
   setField: [{ solver: number; field: Field }, undefined];
   checkSolid: [{ mesh: number; positions: Float64Array }, SolidCertificate];
-  deformed: [{ solver: number }, DeformResult];
+  deformed: [{ solver: number }, DeformResult<SolidCertificate | Certificate>];
   step: [{ solver: number }, Frame];
   run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, Frame];
   weights: [{ solver: number }, Float32Array];

@@ -5,8 +5,8 @@ import { needHandles, needTargets } from './input.js';
 import type * as Bindings from './single/foldfree.js';
 import {
   dispose,
-  type DeformInfo, type DeformOptions, type DeformResult, type DeformStep, type Field, type FramePrecision,
-  type MeshFormat, type SolidInfo, type StepReport, type Targets,
+  type Certificate, type DeformInfo, type DeformOptions, type DeformResult, type DeformStep, type Field, type FramePrecision,
+  type LimDeformOptions, type MeshFormat, type SolidCertificate, type SolidInfo, type StepReport, type Targets,
 } from './types.js';
 
 /** A solid in wasm memory, with copies of its arrays. */
@@ -53,8 +53,11 @@ export class CoreSolid implements SolidInfo {
   }
 }
 
-/** A solid being deformed, one `step()` an iteration. */
-export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
+/** What a deformation can be of. */
+type Body = { solid: CoreSolid; mesh?: never } | { mesh: { handle: Bindings.WasmMesh }; solid?: never };
+
+/** A solid, or (with `Certificate`) triangles in their plane, being deformed, one `step()` an iteration. */
+export class CoreDeformation<C extends SolidCertificate | Certificate = SolidCertificate> implements DeformInfo, Iterable<DeformStep> {
   readonly start: DeformStep;
   readonly notes: string[];
   readonly setupSeconds: number;
@@ -64,15 +67,20 @@ export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
   #field: Field;
 
   /** @internal */
-  static make(bindings: WasmBindings, solid: CoreSolid, options: DeformOptions & { frames?: FramePrecision }): CoreDeformation {
+  static make<C extends SolidCertificate | Certificate>(
+    bindings: WasmBindings, { solid, mesh }: Body, options: (DeformOptions | LimDeformOptions) & { frames?: FramePrecision },
+  ): CoreDeformation<C> {
     const { frames = 'f64', field = 'distortion', pins: givenPins, start: givenStart, targets: givenTargets, ...rest } = options;
     const { pins, start, targets } = needHandles({
       ...(givenPins && { pins: givenPins }),
       ...(givenStart && { start: givenStart }),
       ...(givenTargets && { targets: givenTargets }),
     });
-    const handle = guard(() =>
-      new bindings.WasmDeformation(solid.handle, rest as Bindings.DeformationSettings, start, pins, targets.vertices, targets.positions));
+    const { WasmDeformation } = bindings;
+    const { vertices, positions } = targets;
+    const handle = guard(() => (mesh
+      ? WasmDeformation.ofMesh(mesh.handle, rest as Bindings.LimSettings, start, pins, vertices, positions)
+      : new WasmDeformation(solid.handle, rest as Bindings.DeformationSettings, start, pins, vertices, positions)));
     return new CoreDeformation(handle, frames, field);
   }
 
@@ -115,7 +123,7 @@ export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
     this.#field = field;
   }
 
-  /** Weight over rest weight a tetrahedron; empty where the method has no weights. */
+  /** Weight over rest weight an element; empty where the method has no weights. */
   weights(): Float32Array {
     return this.#handle.weights();
   }
@@ -131,8 +139,8 @@ export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
   }
 
   /** The newest positions in double precision, with their certificate. */
-  result(): DeformResult {
-    return guard(() => ({ positions: this.#handle.positions(), certificate: this.#handle.certificate() }));
+  result(): DeformResult<C> {
+    return guard(() => ({ positions: this.#handle.positions(), certificate: this.#handle.certificate() as C }));
   }
 
   /** Gives its wasm memory back. */
@@ -146,6 +154,9 @@ export class CoreDeformation implements DeformInfo, Iterable<DeformStep> {
 
   #withPositions(report: StepReport): DeformStep {
     const positions = this.frames === 'f32' ? this.#handle.positionsSingle() : this.#handle.positions();
-    return { ...report, positions, field: this.#handle.field(this.#field) };
+    const subTargets = report.lim && {
+      vertices: this.#handle.subTargetVertices(), positions: this.#handle.subTargetPositions(),
+    };
+    return { ...report, positions, field: this.#handle.field(this.#field), ...(subTargets && { subTargets }) };
   }
 }

@@ -5,8 +5,8 @@ import { needTargets } from './input.js';
 import type { CallName, Calls } from './protocol.js';
 import {
   dispose,
-  type DeformInfo, type DeformResult, type DeformStep, type Field, type Frame, type MeshArrays, type Result,
-  type SolverInfo, type Step, type Targets,
+  type Certificate, type DeformInfo, type DeformResult, type DeformStep, type Field, type Frame, type MeshArrays, type Result,
+  type SolidCertificate, type SolverInfo, type Step, type Targets,
 } from './types.js';
 
 /** What `Solver.run` takes. */
@@ -167,8 +167,8 @@ export class Solver extends Stepper<Step> implements SolverInfo {
   }
 }
 
-/** A solid being deformed in the worker. */
-export class Deformation extends Stepper<DeformStep> implements DeformInfo {
+/** A solid, or (with `Certificate`) triangles in their plane, being deformed in the worker. */
+export class Deformation<C extends SolidCertificate | Certificate = SolidCertificate> extends Stepper<DeformStep> implements DeformInfo {
   /**
    * Replaces all targets, also while a run goes on, between two of its steps: pinned vertices are moved to
    * theirs, free ones pulled. The iterate is kept and the status goes back to `running`; a run that has ended
@@ -185,8 +185,8 @@ export class Deformation extends Stepper<DeformStep> implements DeformInfo {
   }
 
   /** The newest positions in double precision, with their certificate. */
-  result(): Promise<DeformResult> {
-    return this.call('deformed');
+  result(): Promise<DeformResult<C>> {
+    return this.call('deformed') as Promise<DeformResult<C>>;
   }
 }
 

@@ -1,13 +1,16 @@
 // The types that the synchronous core and the worker client share.
 import type {
-  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, SolidCertificate, Start, StepReport,
+  Certificate, DeformationSettings, Field, LimOptions, LimSettings, ParameterizationOptions, ShapeInfo, SolidCertificate, Start,
+  StepReport,
 } from './single/foldfree.js';
 
 export type {
-  Certificate, DeformationSettings, Field, ParameterizationOptions, ShapeInfo, SolidCertificate, Start, StepReport,
+  Certificate, DeformationSettings, Field, LimOptions, LimSettings, ParameterizationOptions, ShapeInfo, SolidCertificate, Start,
+  StepReport,
 };
 export type {
-  BoundaryCrossing, Criterion, CutPolicy, DeformationMethod, EnergyKind, Material, Method, Phase, PhaseKind,
+  BoundaryCrossing, Criterion, CutPolicy, DeformationMethod, EnergyKind, LimEnergy, LimHessian, LimStep, Material, Method, Phase,
+  PhaseKind,
 } from './single/foldfree.js';
 
 /** Options of `parameterize`; what is left out has the paper's value. */
@@ -61,7 +64,7 @@ export type FramePrecision = 'f32' | 'f64';
 
 /** A step's report with the positions it led to. */
 export interface Frame extends StepReport {
-  /** The map, n × 2, or the deformed solid, n × 3; interleaved, in the units of the input. */
+  /** The map, n × 2, or the deformed body, n × 3; interleaved, in the units of the input. */
   positions: Float64Array | Float32Array;
 }
 
@@ -133,22 +136,36 @@ export interface Targets {
 export interface Handles {
   /** Vertices held where they start. */
   pins?: Uint32Array | readonly number[];
-  /** Where the solid starts, n × 3, perhaps inverted; left out: at rest. */
+  /** Where it starts, n × 3, perhaps inverted; left out: at rest. */
   start?: Float64Array;
   /** Targets from the beginning. */
   targets?: Targets;
 }
 
-/** Options of `deform`; what is left out has the paper's value. */
-export interface DeformOptions extends Partial<DeformationSettings>, Handles {
+/** What options of every method have in common. */
+interface Deforming extends Handles {
   /** The field that comes with each step (default `'distortion'`). */
   field?: Field;
 }
 
+/** Options of a solid of some material; what is left out has the paper's value. */
+export type ElasticOptions = Partial<DeformationSettings> & Deforming;
+
+/**
+ * Options of locally injective mappings. The start must have no inverted elements, unless `barrier` is false; pinned
+ * vertices are led to their targets step by step.
+ */
+export type LimDeformOptions = LimSettings & Deforming;
+
+/** Options of `deform` for a solid: of a material, or, with `method: 'lim'`, of locally injective mappings. */
+export type DeformOptions = ElasticOptions | (LimDeformOptions & { method: 'lim' });
+
 /** A step of a deformation. */
 export interface DeformStep extends Frame {
-  /** The field that was asked for, one value a tetrahedron; infinite where inverted. */
+  /** The field that was asked for, one value an element; infinite where inverted. */
   field: Float32Array;
+  /** Of locally injective mappings: where the step led the handles that have not arrived yet. */
+  subTargets?: Targets;
 }
 
 /** What is known of a deformation before its first step. */
@@ -161,12 +178,12 @@ export interface DeformInfo {
   setupSeconds: number;
 }
 
-/** A deformed solid. */
-export interface DeformResult {
+/** A deformed solid, or (with `Certificate`) triangles deformed in their plane. */
+export interface DeformResult<C = SolidCertificate> {
   /** n × 3, interleaved. */
   positions: Float64Array;
   /** The exact checks of these positions. */
-  certificate: SolidCertificate;
+  certificate: C;
 }
 
 /** `Symbol.dispose`, also where the engine does not have it yet (`using` needs it). */

@@ -3,7 +3,7 @@ import { Core, CoreMesh, CoreSolver, type WasmBindings } from './engine.js';
 import { FoldfreeError, toPlain } from './error.js';
 import type { CallName, Calls, FromWorker, ToWorker } from './protocol.js';
 import { CoreDeformation, type CoreSolid } from './solid-engine.js';
-import type { DeformInfo, Frame, MeshInfo, SolidInfo, SolverInfo, StepReport } from './types.js';
+import type { Certificate, DeformInfo, DeformOptions, Frame, LimDeformOptions, MeshInfo, SolidInfo, SolverInfo, StepReport } from './types.js';
 
 interface Port {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
@@ -85,7 +85,7 @@ const KEPT: readonly CallName[] = [
 function serve(port: Port): void {
   let core: Core | undefined;
   const meshes = new Map<number, CoreMesh | CoreSolid>();
-  const solvers = new Map<number, CoreSolver | CoreDeformation>();
+  const solvers = new Map<number, CoreSolver | CoreDeformation | CoreDeformation<Certificate>>();
   const runs = new Map<number, Run>();
 
   const theCore = (): Core => {
@@ -112,7 +112,7 @@ function serve(port: Port): void {
     if (solver instanceof CoreSolver) return solver;
     throw new FoldfreeError('internal', 'this is no map');
   };
-  const deformation = (id: number): CoreDeformation => {
+  const deformation = (id: number): CoreDeformation | CoreDeformation<Certificate> => {
     const solver = found(solvers, id, 'solver');
     if (solver instanceof CoreDeformation) return solver;
     throw new FoldfreeError('internal', 'this is no deformation');
@@ -168,7 +168,10 @@ function serve(port: Port): void {
     generateSolid: ({ mesh, name, tetrahedra }) => keepSolid(mesh, theCore().generateSolid(name, tetrahedra)),
     writeSolid: ({ mesh, format, positions }) => solid(mesh).write(format, positions),
     deform({ mesh, solver, options, frames }): DeformInfo {
-      const made = theCore().deform(solid(mesh), { ...options, frames });
+      const body = found(meshes, mesh, 'mesh');
+      const made: CoreDeformation | CoreDeformation<Certificate> = body instanceof CoreMesh
+        ? theCore().deform(body, { ...(options as LimDeformOptions), frames })
+        : theCore().deform(body, { ...(options as DeformOptions), frames });
       solvers.set(solver, made);
       const { start, notes, setupSeconds } = made;
       return { start, notes, setupSeconds };

@@ -18,8 +18,10 @@ pub struct Handle {
     pub slot: u32,
     /// d of (1).
     pub target: [f64; 3],
-    /// t of (5): where the last step was led to.
+    /// t of (5).
     pub sub_target: [f64; 3],
+    /// t of the last step; d before the first after a change of targets.
+    pub led_to: [f64; 3],
     /// Is it there, and held from now on?
     pub arrived: bool,
 }
@@ -108,6 +110,12 @@ impl Constraints {
                 };
             }
         }
+    }
+
+    /// Remembers the sub-targets as those of the step that is being taken.
+    pub fn remember_sub_targets(&mut self) {
+        let handles = self.handles.iter_mut();
+        handles.for_each(|handle| handle.led_to = handle.sub_target);
     }
 
     fn stiffness(&self) -> f64 {

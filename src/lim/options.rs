@@ -75,6 +75,7 @@ pub enum LimHessian {
 
 /// Options of [`super::Lim`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase", default)]
 pub struct LimOptions {
     /// The deformation energy.
@@ -82,6 +83,7 @@ pub struct LimOptions {
     /// Is there a barrier against inversion (2)? Without it elements may invert.
     pub barrier: bool,
     /// β of (2), > 0; none: that of the energy.
+    #[cfg_attr(target_arch = "wasm32", tsify(optional))]
     pub barrier_weight: Option<f64>,
     /// Γ: the barrier acts on elements below this part of their rest measure, in (0, 1].
     pub barrier_reach: f64,

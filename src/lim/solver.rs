@@ -144,6 +144,7 @@ impl Lim {
         };
 
         let clock = Stopwatch::start();
+        self.constraints.remember_sub_targets();
         if sigma > 0.0 {
             core::mem::swap(&mut self.x, &mut self.trial);
             self.settle_handles();

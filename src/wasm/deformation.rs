@@ -1,18 +1,18 @@
 //! A deformation, step by step.
 
-use super::error::{Fallible, invalid_argument, thrown};
-use super::mesh::{flat3, positions3};
-use super::options::deformation_options;
+use super::error::{Fallible, invalid_argument, invalid_option, thrown};
+use super::mesh::{WasmMesh, flat3, positions3};
+use super::options::{deformation_options, lim_options};
 use super::report::StepReport;
 use super::solid::WasmSolid;
 use super::to_js;
 use crate::deformation::{Deformation, Target};
 use crate::optim::Field;
 use glam::DVec3;
-use js_sys::{Float32Array, Float64Array};
+use js_sys::{Float32Array, Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
-/// A solid being deformed. `free()` it when done.
+/// A solid, or triangles in their plane, being deformed. `free()` it when done.
 #[wasm_bindgen]
 pub struct WasmDeformation {
     inner: Deformation,
@@ -25,19 +25,46 @@ impl WasmDeformation {
     #[wasm_bindgen(constructor)]
     pub fn new(
         solid: &WasmSolid,
-        #[wasm_bindgen(unchecked_param_type = "DeformationSettings | undefined")] options: &JsValue,
+        #[wasm_bindgen(unchecked_param_type = "DeformationSettings | LimSettings | undefined")]
+        options: &JsValue,
         start: Option<Vec<f64>>,
         pins: &[u32],
         target_vertices: &[u32],
         target_positions: &[f64],
     ) -> Fallible<WasmDeformation> {
-        let options = deformation_options(options)?;
-        let start = match start {
-            Some(start) => positions3(&start)?,
-            None => solid.mesh().positions.clone(),
-        };
+        let lim = lim_options(options, false)?;
+        let rest = solid.mesh();
+        let start = started(start, &rest.positions)?;
         let targets = targets(target_vertices, target_positions)?;
-        let inner = Deformation::with_targets(solid.mesh(), &start, pins, &targets, &options);
+        let inner = match &lim {
+            Some(lim) => Deformation::locally_injective(rest, &start, pins, &targets, lim),
+            None => {
+                let options = deformation_options(options)?;
+                Deformation::with_targets(rest, &start, pins, &targets, &options)
+            }
+        };
+        let inner = inner.map_err(thrown)?;
+        Ok(Self { inner })
+    }
+
+    /// The same of triangles in a plane z = constant, which locally injective mappings deform.
+    #[wasm_bindgen(js_name = ofMesh)]
+    pub fn of_mesh(
+        mesh: &WasmMesh,
+        #[wasm_bindgen(unchecked_param_type = "LimSettings | undefined")] options: &JsValue,
+        start: Option<Vec<f64>>,
+        pins: &[u32],
+        target_vertices: &[u32],
+        target_positions: &[f64],
+    ) -> Fallible<WasmDeformation> {
+        let Some(options) = lim_options(options, true)? else {
+            let what = "triangles in the plane are deformed by lim alone";
+            return Err(invalid_option("method", what));
+        };
+        let rest = mesh.mesh();
+        let start = started(start, &rest.positions)?;
+        let targets = targets(target_vertices, target_positions)?;
+        let inner = Deformation::locally_injective_in_plane(rest, &start, pins, &targets, &options);
         let inner = inner.map_err(thrown)?;
         Ok(Self { inner })
     }
@@ -70,12 +97,28 @@ impl WasmDeformation {
     /// The positions in single precision: half the bytes, enough to draw.
     #[wasm_bindgen(js_name = positionsSingle)]
     pub fn positions_single(&self) -> Float32Array {
-        let positions = self.inner.solver().positions();
-        let single: Vec<f32> = positions.iter().map(|&x| x as f32).collect();
+        let points = self.inner.positions();
+        let single: Vec<f32> = points.iter().flat_map(|p| p.as_vec3().to_array()).collect();
         Float32Array::from(single.as_slice())
     }
 
-    /// A field, one value a tetrahedron, infinite where inverted.
+    /// The handles that locally injective mappings have not brought to their targets yet,
+    #[wasm_bindgen(js_name = subTargetVertices)]
+    pub fn sub_target_vertices(&self) -> Uint32Array {
+        let targets = self.inner.sub_targets();
+        let vertices: Vec<u32> = targets.iter().map(|target| target.vertex).collect();
+        Uint32Array::from(vertices.as_slice())
+    }
+
+    /// and where the last step led each of them, n × 3.
+    #[wasm_bindgen(js_name = subTargetPositions)]
+    pub fn sub_target_positions(&self) -> Float64Array {
+        let targets = self.inner.sub_targets();
+        let points: Vec<DVec3> = targets.iter().map(|target| target.position).collect();
+        flat3(&points)
+    }
+
+    /// A field, one value an element, infinite where inverted.
     pub fn field(
         &self,
         #[wasm_bindgen(unchecked_param_type = "Field")] name: JsValue,
@@ -91,9 +134,12 @@ impl WasmDeformation {
     }
 
     /// The exact checks of the newest iterate.
-    #[wasm_bindgen(unchecked_return_type = "SolidCertificate")]
+    #[wasm_bindgen(unchecked_return_type = "SolidCertificate | Certificate")]
     pub fn certificate(&self) -> Fallible<JsValue> {
-        to_js(&self.inner.certificate())
+        match self.inner.certificate_in_plane() {
+            Some(certificate) => to_js(&certificate),
+            None => to_js(&self.inner.certificate()),
+        }
     }
 
     /// What was mended or chosen, in words.
@@ -106,6 +152,14 @@ impl WasmDeformation {
     #[wasm_bindgen(getter, js_name = setupSeconds)]
     pub fn setup_seconds(&self) -> f64 {
         self.inner.setup_seconds()
+    }
+}
+
+/// The start, or else the rest shape.
+fn started(start: Option<Vec<f64>>, rest: &[DVec3]) -> Fallible<Vec<DVec3>> {
+    match start {
+        Some(start) => positions3(&start),
+        None => Ok(rest.to_vec()),
     }
 }
 

@@ -16,7 +16,7 @@ mod solid;
 
 pub use deformation::WasmDeformation;
 pub use mesh::{WasmMesh, shapes};
-pub use options::{default_deformation_options, default_options};
+pub use options::{default_deformation_options, default_lim_options, default_options};
 pub use parameterization::{WasmParameterization, check_corners, check_map};
 pub use solid::{WasmSolid, check_solid, solid_shapes};
 #[cfg(feature = "threads")]

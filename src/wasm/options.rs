@@ -2,6 +2,7 @@
 
 use super::error::{Fallible, invalid_option};
 use crate::deformation::{DeformationMethod, DeformationOptions, Material};
+use crate::lim::LimOptions;
 use crate::parameterization::ParameterizationOptions;
 use js_sys::{Object, Reflect};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -48,6 +49,22 @@ impl Default for DeformationSettings {
 /// `undefined` and `null` stand for the defaults.
 pub(super) fn parameterization_options(value: &JsValue) -> Fallible<ParameterizationOptions> {
     options(value)
+}
+
+/// The options of locally injective mappings, if `method` says `lim`, or is left out where that is `usual`: their
+/// own energies, and nothing of materials.
+pub(super) fn lim_options(value: &JsValue, usual: bool) -> Fallible<Option<LimOptions>> {
+    let Some(object) = value.dyn_ref::<Object>() else {
+        let absent = value.is_undefined() || value.is_null();
+        return Ok((absent && usual).then(LimOptions::default));
+    };
+    let method = Reflect::get(object, &"method".into())?;
+    if method.is_undefined() && !usual || !method.is_undefined() && method != "lim" {
+        return Ok(None);
+    }
+    let others = Object::assign(&Object::new(), object);
+    Reflect::delete_property(&others, &"method".into())?;
+    options(&others).map(Some)
 }
 
 /// `undefined` and `null` stand for the defaults.
@@ -112,9 +129,18 @@ pub fn default_deformation_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&DeformationSettings::default()).map_err(JsValue::from)
 }
 
+/// The default options of a deformation by locally injective mappings.
+#[wasm_bindgen(js_name = defaultLimOptions, unchecked_return_type = "LimOptions")]
+pub fn default_lim_options() -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(&LimOptions::default()).map_err(JsValue::from)
+}
+
 #[wasm_bindgen(typescript_custom_section)]
 const MATERIAL_TYPE: &str = "
 /** An elastic energy. */
 export type Material =
   'neo-hookean' | 'stable-neo-hookean' | 'st-venant-kirchhoff' | 'arap' | 'symmetric-dirichlet' | 'dirichlet';
+
+/** Options of locally injective mappings, chosen by `method: 'lim'`. */
+export type LimSettings = Partial<LimOptions> & { method?: 'lim' };
 ";

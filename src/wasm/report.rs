@@ -1,11 +1,12 @@
 //! A step's report as JavaScript sees it.
 
-use crate::optim::{self, Criterion, Phase, Status};
+use crate::optim::{self, Criterion, LimStep, Phase, Status};
 use serde::Serialize;
 use tsify::Tsify;
 
 /// What one step did. The energy of a map is relative to an isometry (1 of symmetric Dirichlet, 0 of the
-/// others), its surface scaled to unit area; that of a solid is in the unit of its moduli times volume.
+/// others), its surface scaled to unit area; that of a solid is in the unit of its moduli times volume, and with
+/// locally injective mappings of a body scaled to a measure of 1, without the barrier.
 #[derive(Debug, Serialize, Tsify)]
 #[serde(rename_all = "camelCase")]
 pub struct StepReport<'a> {
@@ -38,6 +39,10 @@ pub struct StepReport<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[tsify(optional)]
     pub switched_at: Option<u32>,
+    /// Of a locally injective mapping: the parameters of the step.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[tsify(optional)]
+    pub lim: Option<LimStep>,
     /// Seconds since the first step began, setup apart.
     pub seconds: f64,
     /// What the step consisted of, in order.
@@ -63,6 +68,7 @@ impl<'a> From<&'a optim::StepReport> for StepReport<'a> {
             lbfgs_iterations: report.lbfgs_iterations as u32,
             reweighted: report.reweighted,
             switched_at: report.switched_at.map(|k| k as u32),
+            lim: report.lim,
             seconds: report.seconds,
             phases: &report.phases,
         }

@@ -180,6 +180,7 @@ fn constraints(problem: &LimProblem, d: usize, scale: f64, slot: &[u32]) -> Cons
                 slot: slot[v],
                 target,
                 sub_target: target,
+                led_to: target,
                 arrived: true,
             }
         })

@@ -25,6 +25,7 @@ impl Deformer for Lim {
         self.constraints.restart();
         self.constraints.hold_arrived(&self.x);
         parallel::in_pool(|| self.look());
+        self.constraints.remember_sub_targets();
         self.report.lim = Some(self.parameters(0.0, 0.0));
         self.quiet = 0;
         self.counted_from = self.report.iteration;
@@ -45,7 +46,7 @@ impl Deformer for Lim {
         }
         let waiting = self.constraints.handles.iter().filter(|h| !h.arrived);
         waiting
-            .map(|handle| (vertices[handle.slot as usize], handle.sub_target))
+            .map(|handle| (vertices[handle.slot as usize], handle.led_to))
             .collect()
     }
 }
