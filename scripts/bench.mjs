@@ -1,7 +1,8 @@
 // npm run bench: native, wasm and wasm with threads on the same problems in the same run. Surfaces are flattened, also
 // by the peers that are installed (libigl by pip, watlas by npm); solids are deformed; mixed-integer problems are solved
-// natively only, and so is the way to the minimum of second-order methods.
-// node scripts/bench.mjs [--only surfaces|solids|miqp|minimum] [--iterations N] [--threads N] [--quick] [--json FILE]
+// natively only, and so is the way to the minimum of second-order methods. Locally injective mappings: natively, and in
+// wasm in Node.
+// node scripts/bench.mjs [--only surfaces|solids|miqp|minimum|lim] [--iterations N] [--threads N] [--quick] [--json FILE]
 //   [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000] [--systems FOLDER]
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { cpus, tmpdir } from 'node:os';
@@ -64,10 +65,16 @@ const KINDS = {
     const measured = await measureMinimum(bench, { folder: values.meshes, sizes, quick });
     return { ...measured, text: minimumTables(measured) };
   },
+  lim: async (bench) => {
+    const { measureLim, limTables } = await import('./bench/lim.mjs');
+    const measured = await measureLim(bench, { quick });
+    return { ...measured, text: limTables(measured) };
+  },
 };
 
-/** Kinds that need neither the package nor a browser. */
+/** Kinds that need neither the package nor a browser, and those that need no browser. */
 const NATIVE = new Set(['miqp', 'minimum']);
+const IN_NODE = new Set(['lim']);
 
 main(async () => {
   const { only } = values;
@@ -75,8 +82,8 @@ main(async () => {
   count('iterations', values.iterations ?? 1);
   const threads = count('threads', values.threads);
   const kinds = only ? [only] : Object.keys(KINDS);
-  const inBrowser = kinds.some((kind) => !NATIVE.has(kind));
-  if (inBrowser) {
+  const inBrowser = kinds.some((kind) => !NATIVE.has(kind) && !IN_NODE.has(kind));
+  if (kinds.some((kind) => !NATIVE.has(kind))) {
     await installDependencies();
     await buildPackage();
   }

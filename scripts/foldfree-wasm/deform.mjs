@@ -1,4 +1,4 @@
-// foldfree deform.
+// foldfree deform, of solids.
 import { flag, given, number, quiet, text, whole } from './arguments.mjs';
 import { core, program } from './core.mjs';
 import { Failure, told } from './failure.mjs';
@@ -10,7 +10,7 @@ import { checkSolidFormat, readPositions, readSolid, writeDeformed } from './sol
 export const operands = 0;
 export const options = {
   rest: text, init: text, pins: text, targets: text, hard: flag, 'target-stiffness': text, energy: text, young: text,
-  poisson: text, method: text, iterations: text, tolerance: text, threads: text, out: text, report: text,
+  poisson: text, 'no-barrier': flag, 'barrier-weight': text, hessian: text, method: text, iterations: text, tolerance: text, threads: text, out: text, report: text,
   reference: text, quiet,
 };
 
@@ -19,6 +19,8 @@ const ELASTIC = ['neo-hookean', 'stable-neo-hookean', 'st-venant-kirchhoff'];
 
 function settingsOf(values) {
   whole('threads', values.threads); // taken, but this build has one
+  if (values.method === 'lim') return limSettingsOf(values);
+  if (values['no-barrier'] || values['barrier-weight'] !== undefined) throw new Failure('--no-barrier and --barrier-weight go with --method lim');
   return {
     ...core.defaultDeformationOptions(),
     ...given({
@@ -33,8 +35,29 @@ function settingsOf(values) {
   };
 }
 
+/** Of locally injective mappings. */
+function limSettingsOf(values) {
+  return {
+    method: 'lim',
+    ...core.defaultLimOptions(),
+    ...given({
+      energy: values.energy,
+      barrier: values['no-barrier'] ? false : undefined,
+      barrierWeight: number('barrier-weight', values['barrier-weight']),
+      hessian: values.hessian,
+      targetStiffness: number('target-stiffness', values['target-stiffness']),
+      tolerance: number('tolerance', values.tolerance),
+      maxIterations: whole('iterations', values.iterations),
+    }),
+  };
+}
+
 /** The settings as the library's own options nest them. */
 function reported({ energy, young, poisson, ...rest }) {
+  if (rest.method === 'lim') {
+    const { method, ...options } = rest;
+    return { energy, ...options };
+  }
   return { material: ELASTIC.includes(energy) ? { energy, young, poisson } : { energy }, ...rest };
 }
 

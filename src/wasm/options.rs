@@ -87,11 +87,22 @@ fn options<T: Default + Serialize + DeserializeOwned>(value: &JsValue) -> Fallib
     if value.is_undefined() || value.is_null() {
         return Ok(T::default());
     }
+    let defaults = serde_wasm_bindgen::to_value(&T::default()).map_err(JsValue::from)?;
+    let given = checked(value, defaults, &|value| read::<T>(value).map(|_| ()))?;
+    read(given).map_err(|what| invalid_option("options", &what))
+}
+
+/// The object without what is undefined, if all its keys are those of `defaults` and `fits` takes each alone.
+// Apart from `options`, which is compiled once for every kind of options.
+fn checked(
+    value: &JsValue,
+    defaults: JsValue,
+    fits: &dyn Fn(JsValue) -> Result<(), String>,
+) -> Fallible<JsValue> {
     let Some(object) = value.dyn_ref::<Object>() else {
         return Err(invalid_option("options", "an object is needed"));
     };
     // serde-wasm-bindgen reads only the fields a struct has, so the keys are compared here.
-    let defaults = serde_wasm_bindgen::to_value(&T::default()).map_err(JsValue::from)?;
     let known = Object::keys(&defaults.into());
     let given = Object::new();
     for key in Object::keys(object) {
@@ -107,10 +118,10 @@ fn options<T: Default + Serialize + DeserializeOwned>(value: &JsValue) -> Fallib
         }
         let alone = Object::new();
         Reflect::set(&alone, &key, &value)?;
-        read::<T>(alone.into()).map_err(|what| invalid_option(&name, &what))?;
+        fits(alone.into()).map_err(|what| invalid_option(&name, &what))?;
         Reflect::set(&given, &key, &value)?;
     }
-    read(given.into()).map_err(|what| invalid_option("options", &what))
+    Ok(given.into())
 }
 
 fn read<T: DeserializeOwned>(value: JsValue) -> Result<T, String> {
