@@ -1,6 +1,7 @@
 // The state of the page in the address, so that a link opens the same bench.
 import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
-import { MATERIALS } from './materials.js';
+import { isFigure } from './figures.js';
+import { LIM_ENERGIES, MATERIALS } from './materials.js';
 
 /** The modes, the first of which the page opens on. */
 export const MODES = ['flatten', 'deform', 'compare'];
@@ -12,7 +13,7 @@ export const DEFAULTS = Object.freeze({
   }),
   deform: Object.freeze({
     solid: 'bar', tetrahedra: 3000, preset: 'random', method: 'wrapd', material: 'neo-hookean', young: 1e6, poisson: 0.3,
-    field: 'stretch', cut: 'z', at: 0.5,
+    energy: 'arap', barrier: 'on', hessian: 'projected', field: 'stretch', cut: 'z', at: 0.5,
   }),
   compare: Object.freeze({
     sample: 'bumpy-cap', triangles: 4000, start: 'tutte', energy: 'symmetric-dirichlet', clock: 'iterations',
@@ -27,9 +28,12 @@ const CHOICES = {
     energy: ['symmetric-dirichlet', 'arap'],
   },
   deform: {
-    preset: ['held', 'squash', 'twist', 'random', 'collapse'],
-    method: ['wrapd', 'wrapd+newton', 'newton', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs'],
+    preset: ['held', 'drag', 'squash', 'twist', 'random', 'collapse'],
+    method: ['wrapd', 'wrapd+newton', 'newton', 'r-admm', 'w-admm', 'admm-pd', 'l-bfgs', 'lim'],
     material: Object.keys(MATERIALS),
+    energy: Object.keys(LIM_ENERGIES),
+    barrier: ['on', 'off'],
+    hessian: ['projected', 'frozen'],
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
   },
@@ -87,6 +91,11 @@ export function readAddress(mode = modeOf(), search = location.search) {
     // What nobody asked for has to be comparable by the energy, too.
     const fallback = compared(methods, energy) ?? COMPARABLE[energy].slice(0, MOST).join(',');
     state.methods = compared(asked.get(COMPARED) ?? '', energy) ?? fallback;
+  }
+  // Figures in the plane have a method of their own.
+  if (mode === 'deform' && isFigure(state.solid)) {
+    state.method = 'lim';
+    if (!['held', 'drag'].includes(state.preset)) state.preset = 'drag';
   }
   const steps = Number(asked.get(STEPS[mode]));
   if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);

@@ -63,7 +63,7 @@ class Board {
 
 /** One mode's bench, speaking the page's records. */
 class BenchBoard {
-  /** Tetrahedra of the solid on this bench. */
+  /** Elements of the body on this bench. */
   tetrahedra = 0;
 
   constructor(handle) {
@@ -79,6 +79,12 @@ class BenchBoard {
   solid({ positions, tetrahedra, surface }) {
     this.tetrahedra = tetrahedra.length / 4;
     this.handle.setSolid(Float64Array.from(positions), tetrahedra, surface);
+  }
+
+  /** Triangles in a plane: positions (n×3), triangles (m×3). */
+  planar({ positions, indices }) {
+    this.tetrahedra = indices.length / 3;
+    this.handle.setPlanar(Float64Array.from(positions), indices);
   }
 
   /** A run of `method` from `start` begins. */
@@ -138,6 +144,11 @@ class BenchBoard {
     this.handle.setTargets(vertices, positions);
   }
 
+  /** Where the newest step led vertices that are not at their targets yet. */
+  subTargets({ vertices, positions } = { vertices: new Uint32Array(), positions: new Float64Array() }) {
+    this.handle.setSubTargets(vertices, positions);
+  }
+
   /** The vertex that keys would pin, or nothing. */
   cursor(vertex) { this.handle.setCursor(vertex ?? 0xffff_ffff); }
   show(index) { this.handle.showFrame(index); }
@@ -153,8 +164,11 @@ const single = (positions) => (positions instanceof Float32Array ? positions : F
 
 const numbers = (step) => Float64Array.of(
   step.iteration, step.energy, step.inverted, step.gradientNorm, step.smallestSigma, step.largestSigma,
-  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds, step.switchedAt ?? -1,
+  step.lbfgsIterations, step.reweighted ? 1 : 0, step.seconds, step.switchedAt ?? -1, ...parameters(step.lim),
 );
+
+/** What a step of a locally injective mapping was made with. */
+const parameters = (lim) => (lim ? [lim.alpha, lim.mu, lim.sigma, lim.positionalError, lim.barrier, lim.arrived, lim.handles] : []);
 
 const phases = (step) => Float64Array.from(
   (step.phases ?? []).flatMap(({ kind, count, milliseconds }) => [PHASES.indexOf(kind), count, milliseconds]),

@@ -1,6 +1,7 @@
 // The controls of the Deform mode.
 import { MATERIALS, isElastic } from './materials.js';
-import { PRESETS } from './presets.js';
+import { FIGURES } from './figures.js';
+import { PRESETS, presetsOf } from './presets.js';
 import { number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
@@ -25,8 +26,15 @@ export class DeformControls {
   list(shapes) {
     const select = $('solid');
     const chosen = this.#mode.source.solid;
-    select.replaceChildren(...shapes.map(({ name, title, description }) => Object.assign(new Option(title, name), { title: description })));
-    if (chosen && shapes.some(({ name }) => name === chosen)) select.value = chosen;
+    const group = (label, list) => {
+      const options = list.map(({ name, title, description }) => Object.assign(new Option(title, name), { title: description }));
+      const made = Object.assign(document.createElement('optgroup'), { label });
+      made.append(...options);
+      return made;
+    };
+    const figures = Object.entries(FIGURES).map(([name, figure]) => ({ name, ...figure }));
+    select.replaceChildren(group('Solids', shapes), group('In the plane', figures));
+    if (chosen && [...shapes, ...figures].some(({ name }) => name === chosen)) select.value = chosen;
   }
 
   connect() {
@@ -100,6 +108,10 @@ export class DeformControls {
       sizes.value = String(source.tetrahedra);
     }
     $('tetrahedra').disabled = Boolean(source.bytes);
+    const { figure } = this.#mode;
+    for (const option of $('deform-method').options) option.disabled = Boolean(figure) && option.value !== 'lim';
+    for (const button of $('presets').children) button.hidden = !presetsOf(figure).includes(button.dataset.preset);
+    for (const option of $('tetrahedra').options) option.text = option.text.replace(/tetrahedra|triangles/, figure ? 'triangles' : 'tetrahedra');
     this.reflectHandles();
     this.look();
   }
@@ -118,7 +130,8 @@ export class DeformControls {
     $('field').value = wanted.field;
     $('cut').value = wanted.cut;
     $('cut-at').value = String(Math.round(100 * wanted.at));
-    $('cut-at').disabled = wanted.cut === 'none';
+    $('cut').disabled = Boolean(this.#mode.figure);
+    $('cut-at').disabled = wanted.cut === 'none' || Boolean(this.#mode.figure);
     $('cut-at').setAttribute('aria-valuetext', `${Math.round(100 * wanted.at)} % along ${wanted.cut}`);
     bench?.boxTool(this.#box);
   }

@@ -5,7 +5,7 @@ import { ending, number, whole } from './words.js';
 export function factsOf(session, { title, threads }) {
   const { problem, certificate, newest, solid } = session;
   const pairs = [
-    ['solid', title],
+    [session.planar ? 'figure' : 'solid', title],
     ['vertices', whole(solid.positions.length / 3)],
     ['held', `${whole(problem.pins)} vertices`],
     ['setup', `${number(1000 * problem.setupSeconds, 3)} ms`],
@@ -13,7 +13,11 @@ export function factsOf(session, { title, threads }) {
     ...problem.notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
   ];
   if (session.finished && newest.iteration > 0) pairs.push(['ended', `${ending(newest)} after ${newest.iteration}`]);
-  if (certificate) {
+  if (certificate && session.planar) {
+    const wrong = certificate.inverted.length + certificate.degenerate.length;
+    pairs.push(['certificate', wrong === 0 ? 'no triangle inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
+    if (wrong === 0) pairs.push(['', certificate.globallyInjective ? 'injective as a whole (exact)' : 'parts of it lie on each other (exact)']);
+  } else if (certificate) {
     const wrong = certificate.inverted.length + certificate.degenerate.length;
     pairs.push(['certificate', wrong === 0 ? 'no tetrahedron inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
     if (wrong === 0) pairs.push(['', certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)']);

@@ -127,7 +127,7 @@ export class Hands {
     const mode = this.#mode;
     if (!mode.mayHold) return;
     mode.showNewest();
-    this.#landmarks ??= { list: landmarks(mode.session.positions, mode.session.solid.surface), at: -1 };
+    this.#landmarks ??= { list: landmarks(mode.session.positions, mode.session.solid.surface ?? mode.session.solid.indices), at: -1 };
     const { list } = this.#landmarks;
     this.#landmarks.at = (this.#landmarks.at + 1) % list.length;
     const { vertex, words } = list[this.#landmarks.at];

@@ -1,5 +1,6 @@
 // What is being deformed: one solid, one solver after the other, and the record of all their steps. No DOM here.
-import { volumeOf } from './relative.js';
+import { FIGURES, isFigure } from './figures.js';
+import { areaOf, volumeOf } from './relative.js';
 
 /** Iterations of one solver at most: a person may drag for a long time. */
 export const MOST_ITERATIONS = 100_000;
@@ -51,6 +52,11 @@ export class DeformSession {
     return this.#solid;
   }
 
+  /** Whether it is triangles in a plane. */
+  get planar() {
+    return this.#solid?.indices !== undefined;
+  }
+
   get newest() {
     return this.records.at(-1);
   }
@@ -62,6 +68,7 @@ export class DeformSession {
 
   /** Reads or generates a solid; it lies on the bench only when `build` has been called. */
   read(source) {
+    if (isFigure(source.solid)) return this.#foldfree.mesh(FIGURES[source.solid].make(source.tetrahedra));
     if (!source.bytes) return this.#foldfree.generateSolid(source.solid, source.tetrahedra);
     return this.#foldfree.solid(source.bytes, source.format, source.elements);
   }
@@ -74,7 +81,7 @@ export class DeformSession {
   }
 
   /**
-   * Makes a solver. `solid`: another than before. `start()`: where it begins (n×3), asked for when everything before has
+   * Makes a solver. `solid`: another than before. `start()`: where it begins (n×3) or a promise of it, asked for when everything before has
    * ended. `fresh`: the records begin anew with the start, else they go on.
    * Only when everything went well does the last solver leave. Resolves with the start, or with undefined when a later
    * build (or `suspend()`) overtook this one; rejects when it failed.
@@ -90,7 +97,7 @@ export class DeformSession {
       await this.#inTurn(async () => {
         if (overtaken()) return;
         const solver = await this.#foldfree.deform(solid, {
-          ...settings, pins, start: start(), targets, maxIterations: MOST_ITERATIONS, field: 'stress', frames: 'f32',
+          ...settings, pins, start: await start(), targets, maxIterations: MOST_ITERATIONS, field: 'stress', frames: 'f32',
         });
         if (overtaken()) solver.free();
         else this.#install(solver, { source, solid, settings, pins, fresh });
@@ -115,7 +122,7 @@ export class DeformSession {
     if (!same) this.#solid?.free();
     [this.#solid, this.#solver, this.#suspended, this.#aimed] = [solid, solver, false, false];
     const { setupSeconds } = solver;
-    const volume = same ? this.problem.volume : volumeOf(solid.positions, solid.tetrahedra);
+    const volume = same ? this.problem.volume : measureOf(solid);
     this.problem = { source, settings, volume, pins: pins.length, notes: [...solid.notes, ...solver.notes], setupSeconds };
     this.certificate = undefined;
     this.#status = solver.start.status;
@@ -264,6 +271,9 @@ export class DeformSession {
 }
 
 /** A step without its arrays. */
-function numbersOf({ positions, field, ...numbers }) {
+function numbersOf({ positions, field, subTargets, ...numbers }) {
   return numbers;
 }
+
+/** Volume of a solid, area of triangles. */
+const measureOf = ({ positions, tetrahedra, indices }) => (indices ? areaOf(positions, indices) : volumeOf(positions, tetrahedra));

@@ -5,16 +5,21 @@ import { DeformControls } from './deform-controls.js';
 import { factsOf } from './deform-facts.js';
 import { Hands } from './deform-hands.js';
 import { DeformSession } from './deform-session.js';
-import { readSolidFiles, save } from './files.js';
+import { objOf, readSolidFiles, save } from './files.js';
+import { FIGURES, isFigure } from './figures.js';
 import { Handles } from './handles.js';
+import { LimControls, limName, limSettings } from './lim-controls.js';
 import { isElastic } from './materials.js';
 import { Mode, nextFrame } from './mode.js';
 import { Motion } from './motion.js';
 import { describe } from './notice.js';
-import { PRESETS, collapsed, scattered, scene } from './presets.js';
+import { PRESETS, collapsed, presetsOf, scattered, scene } from './presets.js';
 import { Rate } from './rate.js';
 import { relativeTo, volumeOf } from './relative.js';
 import { METHODS, whole } from './words.js';
+
+/** Presets that spoil what they are given. */
+const SPOILS = { random: scattered, collapse: collapsed };
 
 /** Title of a notice. */
 const NOTHING_HELD = 'Nothing is held';
@@ -29,6 +34,7 @@ export class Deform extends Mode {
   source = { solid: this.wanted.solid, tetrahedra: this.wanted.tetrahedra };
   controls = new DeformControls(this);
   hands = new Hands(this);
+  lim = new LimControls(this);
   #good = { ...this.wanted };
   #held = []; // the handles the solver knows
   #rest; // positions at rest
@@ -77,7 +83,7 @@ export class Deform extends Mode {
   invitation() {
     const start = this.records[0];
     const { preset } = this.wanted;
-    const wrong = `${whole(start.inverted)} of ${whole(this.bench.tetrahedra)} tetrahedra are inside out`;
+    const wrong = `${whole(start.inverted)} of ${whole(this.bench.tetrahedra)} ${this.figure ? 'triangles' : 'tetrahedra'} are inside out`;
     if (preset === 'random') return { button: 'Untangle', text: `Both ends are held; every other vertex was put at random. ${wrong}.` };
     if (preset === 'collapse') return { button: 'Unfold', text: `Both ends are held; every other vertex is in one point. ${wrong}.` };
     if (this.#scene?.motion) return { button: PRESETS[preset].title, text: `${PRESETS[preset].hint}.` };
@@ -100,7 +106,18 @@ export class Deform extends Mode {
 
   get #settings() {
     const { method, material, young, poisson } = this.wanted;
+    if (this.isLim) return limSettings(this.wanted);
     return { method, energy: material, ...(isElastic(material) && { young, poisson }) };
+  }
+
+  /** Whether locally injective mappings are the method. */
+  get isLim() {
+    return this.wanted.method === 'lim';
+  }
+
+  /** The figure in the plane that is on the bench, if one is. */
+  get figure() {
+    return FIGURES[this.source.solid];
   }
 
   get #stiffness() {
@@ -124,7 +141,8 @@ export class Deform extends Mode {
         if (!same) solid.free();
         return false;
       }
-      const made = scene(asked.preset, solid.positions, keep ? this.handles.groups.map(({ vertices }) => vertices) : undefined);
+      const kept = keep ? this.handles.groups.map(({ vertices }) => vertices) : undefined;
+      const made = scene(asked.preset, solid.positions, kept, FIGURES[next.solid]);
       const handles = new Handles();
       for (const vertices of made.held) handles.add(vertices, made.start);
       // From here on the solid is the session's, except when it fails.
@@ -135,7 +153,8 @@ export class Deform extends Mode {
       this.source = next;
       [this.#scene, this.#motion, this.#rest] = [made, new Motion(made.motion), solid.positions];
       this.#movedAt = undefined;
-      if (!same) this.bench.solid({ positions: solid.positions, tetrahedra: solid.tetrahedra, surface: solid.surface });
+      if (!same && session.planar) this.bench.planar(solid);
+      else if (!same) this.bench.solid(solid);
       this.hands.take(handles);
       this.#look();
       this.#begin(start, asked.preset);
@@ -176,8 +195,11 @@ export class Deform extends Mode {
 
   /** A run begins on the canvas. */
   #begin(start, name) {
-    this.#relative = relativeTo(this.#stiffness, this.session.problem.volume);
-    this.bench.begin(this.wanted.method, name, this.wanted.material);
+    const { method, material } = this.wanted;
+    // Locally injective mappings count without units.
+    this.#relative = this.isLim ? (step) => step : relativeTo(this.#stiffness, this.session.problem.volume);
+    if (this.isLim) this.bench.begin(limName(this.wanted), name, `lim:${this.wanted.energy}`);
+    else this.bench.begin(method, name, material);
     this.push(start);
     this.records = this.session.records;
     this.hands.draw();
@@ -209,7 +231,8 @@ export class Deform extends Mode {
     try {
       const made = await session.build({
         source: this.source, settings: this.#settings, pins, targets: this.handles.targets(), fresh: fresh || !begun,
-        start: () => this.handles.applied(start(session.positions)),
+        // What is held is led to its place, not put there.
+        start: () => (this.isLim ? session.result().then(start) : this.handles.applied(start(session.positions))),
       });
       if (!made) return 'overtaken';
       if (fresh || !begun) this.#begin(made, begun ? 'here' : this.wanted.preset);
@@ -236,6 +259,7 @@ export class Deform extends Mode {
 
   push(step) {
     this.bench.pushSolid(this.#relative(step));
+    this.bench.subTargets(step.subTargets);
   }
 
   get restless() {
@@ -338,7 +362,7 @@ export class Deform extends Mode {
   async preset(name) {
     if (!this.whenReady(() => this.preset(name))) return;
     this.wanted.preset = name;
-    const spoil = { random: scattered, collapse: collapsed }[name];
+    const spoil = SPOILS[name];
     if (spoil && this.records.length > 1 && this.handles.groups.length > 0) {
       this.endMotion();
       const pins = this.handles.pins();
@@ -360,10 +384,24 @@ export class Deform extends Mode {
   /** A parameter of the solver: another energy or method begins another curve. */
   async change(key, value) {
     this.wanted[key] = value;
+    // A start full of inversions is none for this method.
+    if (this.isLim && this.records.length < 2 && SPOILS[this.wanted.preset]) this.wanted.preset = 'twist';
     this.reflect();
     if (!this.whenReady(() => this.open())) return;
     if (this.records.length < 2 && this.handles.groups.length > 0) await this.open(this.source, { keep: true });
     else await this.rebuild({ fresh: true });
+    this.remember();
+  }
+
+  /** A parameter of locally injective mappings: the same drag again, from rest. */
+  async again(key, value) {
+    this.wanted[key] = value;
+    this.reflect();
+    if (!this.whenReady(() => this.open())) return;
+    const played = !this.hands.used && this.#scene?.motion && this.records.length > 1;
+    if (this.records.length < 2 || played) {
+      if ((await this.open(this.source, { keep: true })) && played && !this.solving) await this.play();
+    } else await this.rebuild({ fresh: true, start: () => Float64Array.from(this.#rest) });
     this.remember();
   }
 
@@ -388,8 +426,11 @@ export class Deform extends Mode {
   }
 
   async changeSolid(solid, tetrahedra) {
-    const next = { solid, tetrahedra };
+    const other = isFigure(solid) !== Boolean(this.figure);
+    const next = { solid, tetrahedra: other ? (isFigure(solid) ? 2000 : 3000) : tetrahedra };
     Object.assign(this.wanted, next);
+    if (isFigure(solid)) this.wanted.method = 'lim';
+    if (!presetsOf(isFigure(solid)).includes(this.wanted.preset)) this.wanted.preset = isFigure(solid) ? 'drag' : 'twist';
     if (!this.whenReady(() => this.open(next))) return;
     await this.open(next, { busy: 'Building the solid' });
   }
@@ -406,11 +447,13 @@ export class Deform extends Mode {
       return this.notice(`${file.name} was not opened`, describe(error));
     }
     this.wanted.preset = 'held';
+    if (this.figure) this.wanted.method = 'wrapd';
     await this.open(next, { busy: `Reading ${file.name}` });
   }
 
   reflect() {
     this.controls.reflect();
+    this.lim.reflect();
   }
 
   /** Writes what is on the bench into the address; of a file only how it is solved and looked at. */
@@ -429,13 +472,15 @@ export class Deform extends Mode {
   get exports() {
     const name = (this.source.name ?? this.source.solid).replace(/\.(mesh|msh|vtk|node)(\.gz)?$/i, '');
     const { session } = this;
+    const figure = async () => save(objOf(await session.result(), session.solid.indices), `${name}-lim.obj`, 'text/plain');
     return {
-      'export-solid': async () => save(await session.solid.write('mesh', await session.result()), `${name}-${this.wanted.method}.mesh`, 'text/plain'),
+      'export-solid': session.planar ? figure : async () => save(await session.solid.write('mesh', await session.result()), `${name}-${this.wanted.method}.mesh`, 'text/plain'),
       'export-trace': async () => save(`${JSON.stringify(await session.trace(), null, 1)}\n`, `${name}-${this.wanted.method}.json`, 'application/json'),
     };
   }
 
   connect() {
     this.controls.connect();
+    this.lim.connect();
   }
 }

@@ -64,3 +64,11 @@ export function acceptDrops(veil, onFiles) {
     if (files.length) onFiles(files);
   });
 }
+
+/** Triangles (m×3) with their vertices (n×3) as an OBJ file. */
+export function objOf(positions, indices) {
+  const lines = [];
+  for (let i = 0; i < positions.length; i += 3) lines.push(`v ${positions[i]} ${positions[i + 1]} ${positions[i + 2]}`);
+  for (let i = 0; i < indices.length; i += 3) lines.push(`f ${indices[i] + 1} ${indices[i + 1] + 1} ${indices[i + 2] + 1}`);
+  return `${lines.join('\n')}\n`;
+}

@@ -11,3 +11,9 @@ export const MATERIALS = {
 
 /** Whether Young's modulus and Poisson's ratio say anything of a material. */
 export const isElastic = (material) => MATERIALS[material]?.elastic === true;
+
+/** The energies of locally injective mappings. */
+export const LIM_ENERGIES = {
+  arap: 'ARAP', lscm: 'LSCM', dirichlet: 'Dirichlet', laplacian: 'Laplacian', 'uniform-laplacian': 'uniform Laplacian',
+  'green-strain': 'Green strain',
+};

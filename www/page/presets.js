@@ -1,5 +1,7 @@
 // Scenes for solids: who is held, where everything starts, and how what is held moves. No DOM here.
 
+import { along } from './figures.js';
+
 /** Part of the longest axis that counts as an end. */
 const END = 0.08;
 
@@ -10,11 +12,17 @@ const SQUASH = { total: 0.45, seconds: 3, steps: 60 };
 /** Names, in the order of the buttons: what the button says, what it is for. */
 export const PRESETS = {
   held: { title: 'At rest', hint: 'Both ends are held, and nothing moves until you drag something' },
+  drag: { title: 'Drag', hint: 'One handle is drawn to where the others hardly let it go' },
   squash: { title: 'Squash', hint: 'Both ends are held, and one is pressed towards the other' },
   twist: { title: 'Twist', hint: 'Both ends are held, and one is turned once round' },
   random: { title: 'Randomise', hint: 'Everything that is not held goes to a random place' },
   collapse: { title: 'Collapse', hint: 'Everything that is not held goes to one point' },
 };
+
+const DRAG = { total: 1, seconds: 6, steps: 80 };
+
+/** What can be played with a body: a figure in the plane has drags of its own; to be scattered it would have to invert. */
+export const presetsOf = (figure) => (figure ? ['held', 'drag'] : Object.keys(PRESETS).filter((name) => name !== 'drag'));
 
 /** Lowest and highest corner of positions (n×3). */
 export function bounds(positions) {
@@ -103,7 +111,8 @@ export function collapsed(rest, positions, held) {
  * ends), the `start` (n×3) with all of them at their places, and the `motion` of the upper end, if it is one of them:
  * `{ handle, seconds, steps, at(part) }`, where its vertices are after a part (0–1) of it.
  */
-export function scene(preset, rest, kept) {
+export function scene(preset, rest, kept, figure) {
+  if (figure) return figureScene(preset, rest, kept, figure);
   const { axis, length, low, high } = ends(rest);
   const start = Float64Array.from(rest);
   // A solid so coarse that its ends meet, or are all of it, is held at one of them.
@@ -132,3 +141,15 @@ export function scene(preset, rest, kept) {
 }
 
 const same = (a, b) => a.length === b.length && a.every((x, i) => x === b[i]);
+
+/** The same of a figure in the plane, whose last handle a drag moves. */
+function figureScene(preset, rest, kept, { held, path }) {
+  const own = held.map((find) => find(rest));
+  const last = own.at(-1);
+  const groups = kept ?? own;
+  const handle = groups.findIndex((vertices) => same(vertices, last));
+  const base = pick(rest, last);
+  const motion = preset === 'drag' && handle >= 0
+    ? { handle, seconds: DRAG.seconds, steps: DRAG.steps, at: (part) => along(base, path, part * DRAG.total) } : undefined;
+  return { axis: 2, held: groups, start: Float64Array.from(rest), motion };
+}

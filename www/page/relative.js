@@ -17,6 +17,17 @@ export function volumeOf(positions, tetrahedra) {
   return six / 6;
 }
 
+/** Area of triangles (m×3) of the plane at rest: positions (n×3). */
+export function areaOf(positions, triangles) {
+  let twice = 0;
+  for (let i = 0; i < triangles.length; i += 3) {
+    const [a, b, c] = triangles.subarray(i, i + 3);
+    const edge = (to, k) => positions[3 * to + k] - positions[3 * a + k];
+    twice += edge(b, 0) * edge(c, 1) - edge(b, 1) * edge(c, 0);
+  }
+  return Math.abs(twice) / 2;
+}
+
 /**
  * Makes steps relative: energies over stiffness × volume, gradients over stiffness × volume^⅔, stresses over stiffness.
  * `stiffness` is Young's modulus, or 1 for a material without moduli.

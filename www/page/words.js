@@ -27,7 +27,7 @@ export function spoken(record) {
 /** Names of methods, as people write them. */
 export const METHODS = {
   wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', 'l-bfgs': 'L-BFGS', arap: 'ARAP',
-  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton',
+  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton', lim: 'LIM',
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
 

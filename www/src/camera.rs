@@ -63,6 +63,31 @@ impl Orbit {
         orbit.centred(positions)
     }
 
+    /// Looks straight down at points of a plane z = constant, with room to drag some of them out.
+    pub fn above(positions: &[f64]) -> Self {
+        let orbit = Self {
+            rotation: Quat::IDENTITY,
+            ..Self::around(positions)
+        };
+        let points = positions.as_chunks::<3>().0.iter();
+        let points = points.map(|&p| DVec3::from_array(p).as_vec3());
+        let (low, high) = points.fold((Vec3::MAX, Vec3::MIN), |(l, h), p| (l.min(p), h.max(p)));
+        let upright = Self {
+            centre: 0.5 * (low + high),
+            zoom: 1.0,
+            fit: 1.0,
+            ..orbit
+        };
+        let mut upright = upright.centred(positions);
+        upright.fit *= 0.88;
+        upright
+    }
+
+    /// Moves what is seen by `delta` in the model.
+    pub fn shift(&mut self, delta: Vec3) {
+        self.centre -= delta;
+    }
+
     /// Shows `reach` radii (at most 3.5) before and behind the centre.
     pub fn reaching(self, reach: f32) -> Self {
         let reach = reach.min(3.5);

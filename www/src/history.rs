@@ -59,8 +59,27 @@ pub struct Record {
     pub seconds: f64,
     /// Of a method in two stages: the iteration with which the first ended, once it has.
     pub switched_at: Option<u32>,
+    /// Of a locally injective mapping: what the step was made with.
+    pub lim: Option<LimStep>,
     /// The phases of the iteration that led here.
     pub phases: Vec<Phase>,
+}
+
+/// What a step of a locally injective mapping was made with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LimStep {
+    /// α, how hard handles are led to their targets.
+    pub alpha: f64,
+    /// μ, what the diagonal needed for the matrix to be positive definite.
+    pub mu: f64,
+    /// σ, the part of the direction that was gone.
+    pub sigma: f64,
+    /// The largest distance of a handle from its target, relative.
+    pub error: f64,
+    /// β Σ φ.
+    pub barrier: f64,
+    /// Handles that are at their targets, and all.
+    pub arrived: [u32; 2],
 }
 
 /// How many numbers the page sends with an iterate, phases apart.
@@ -69,7 +88,21 @@ pub const RECORD_WIDTH: usize = 10;
 impl Record {
     /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields (−1 for a switch that
     /// has not been), and three (kind, count, milliseconds) for every phase. `None` if the first is too short.
+    ///
+    /// Behind them may stand the seven of a [`LimStep`].
     pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
+        let (numbers, lim) = numbers.split_at_checked(RECORD_WIDTH)?;
+        let lim = match *lim {
+            [alpha, mu, sigma, error, barrier, arrived, all] => Some(LimStep {
+                alpha,
+                mu,
+                sigma,
+                error,
+                barrier,
+                arrived: [arrived as u32, all as u32],
+            }),
+            _ => None,
+        };
         let &[
             iteration,
             energy,
@@ -96,6 +129,7 @@ impl Record {
             reweighted: reweighted != 0.0,
             seconds,
             switched_at: (switched_at >= 0.0).then_some(switched_at as u32),
+            lim,
             phases: phases
                 .as_chunks::<3>()
                 .0
@@ -244,6 +278,10 @@ mod tests {
         );
         assert_eq!((r.worst_distortion(), r.switched_at), (2.0, Some(2)));
         assert!(Record::from_numbers(&[1.0], &[]).is_none());
+        let mut lim = [0.0; 17];
+        lim[10..].copy_from_slice(&[1e8, 0.1, 0.5, 0.25, 0.02, 3.0, 4.0]);
+        let step = Record::from_numbers(&lim, &[]).and_then(|r| r.lim).unwrap();
+        assert_eq!((step.alpha, step.arrived), (1e8, [3, 4]));
     }
 
     #[test]

@@ -50,6 +50,15 @@ pub const SOLID: Nouns = Nouns {
     whole: "shape",
 };
 
+/// Words for triangles that are deformed in their plane.
+pub const PLANAR: Nouns = Nouns {
+    element: "triangle",
+    elements: "triangles",
+    worst: "worst stretch",
+    formula: "max(σ₁, 1/σ₂)",
+    whole: "shape",
+};
+
 impl Explanation {
     /// The sentence, in the words of a mode.
     pub fn sentence(&self, nouns: Nouns) -> String {
@@ -73,6 +82,10 @@ pub fn method_name(method: &str) -> &str {
         "slim" => "SLIM",
         "newton" => "Newton",
         "wrapd+newton" => "WRAPD+Newton",
+        "lim" => "LIM",
+        "lim-frozen" => "LIM, frozen",
+        "lim-off" => "LIM, no barrier",
+        "lim-frozen-off" => "LIM, frozen, no barrier",
         "arap" => "ARAP",
         "lscm" => "LSCM",
         "harmonic" => "Harmonic",
@@ -90,6 +103,7 @@ pub fn citation(method: &str) -> &'static str {
         "newton" => "Smith et al. 2019",
         "admm-pd" => "Overby et al. 2017",
         "l-bfgs" => "Liu et al. 2017",
+        "lim" | "lim-frozen" | "lim-off" | "lim-frozen-off" => "Schüller et al. 2013",
         "arap" => "Liu et al. 2008",
         "lscm" => "Lévy et al. 2002",
         "harmonic" => "Eck et al. 1995",
@@ -171,11 +185,60 @@ fn second_order(method: &str, kind: PhaseKind) -> Explanation {
     }
 }
 
+/// What a phase of a locally injective mapping's iteration does.
+fn locally_injective(method: &str, kind: PhaseKind) -> Explanation {
+    let barrier = !method.ends_with("-off");
+    match kind {
+        PhaseKind::Local if method.starts_with("lim-frozen") => Explanation {
+            name: "Hessians",
+            symbol: "Hᵢ ← ∂²ψᵢ + β ∂²φᵢ, R kept",
+            equation: "appendix (2), (13)",
+            unit: None,
+            sentence: "Every {element} on its own gives the second derivatives of its energy, as if its rotation stayed, and of its barrier.",
+        },
+        PhaseKind::Local => Explanation {
+            name: "Hessians",
+            symbol: "Hᵢ ← ∂²(ψᵢ + βφᵢ), convex",
+            equation: "Smith 2019",
+            unit: None,
+            sentence: "Every {element} on its own gives the second derivatives of its energy and its barrier, without what is negative in them, or with a part of it.",
+        },
+        PhaseKind::Reweight => Explanation {
+            name: "Factor",
+            symbol: "H + μI = L Lᵀ",
+            equation: "Levenberg–Marquardt",
+            unit: Some(["factor", "factors"]),
+            sentence: "The matrix of all vertices is factored; where that fails it is not positive definite, and μ grows until it is.",
+        },
+        PhaseKind::Global => Explanation {
+            name: "Direction",
+            symbol: "(H + μI) p = −g",
+            equation: "(5), (6)",
+            unit: Some(["solve", "solves"]),
+            sentence: "All vertices together: one linear solve. Handles are led the part 1/(1 + μ²) of the way to their targets.",
+        },
+        PhaseKind::Evaluate => Explanation {
+            name: "Line search",
+            symbol: "v ← v + σp",
+            equation: if barrier { "(2), (3)" } else { "Armijo" },
+            unit: Some(["trial", "trials"]),
+            sentence: if barrier {
+                "The step ends before the first {element} would lose its last bit of area or volume; it is halved until the objective falls and nothing is inverted, which is checked exactly."
+            } else {
+                "The step is halved until the objective falls; without the barrier nothing keeps the {elements} from inverting."
+            },
+        },
+    }
+}
+
 /// What a phase of a method's iteration does. Equation numbers are those of the WRAPD paper
 /// (Brown & Narain 2021) unless a name says otherwise.
 pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
     if matches!(method, "cm" | "slim" | "newton") {
         return second_order(method, kind);
+    }
+    if method.starts_with("lim") {
+        return locally_injective(method, kind);
     }
     let rotation_aware = matches!(method, "wrapd" | "r-admm");
     match (method, kind) {
@@ -261,7 +324,9 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
 
 /// What the energy of the run counts, with the value of an isometry.
 pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
-    if solid {
+    if energy.starts_with("lim:") {
+        "deformation energy (undeformed: 0)"
+    } else if solid {
         match energy {
             "symmetric-dirichlet" => "relative energy (undeformed: 2)",
             "dirichlet" => "relative energy (undeformed: 1.5)",
@@ -291,6 +356,10 @@ mod tests {
             "slim",
             "newton",
             "wrapd+newton",
+            "lim",
+            "lim-frozen",
+            "lim-off",
+            "lim-frozen-off",
             "arap",
             "lscm",
             "harmonic",
@@ -304,7 +373,7 @@ mod tests {
                 PhaseKind::Evaluate,
             ] {
                 let e = explain(method, kind);
-                for nouns in [SURFACE, SOLID] {
+                for nouns in [SURFACE, SOLID, PLANAR] {
                     let sentence = e.sentence(nouns);
                     assert!(
                         sentence.ends_with('.') && !sentence.contains('{'),

@@ -97,6 +97,9 @@ fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
             ui.set_clip_rect(rect);
             match view {
                 View::Shape if bench.body.is_some() => solid::show_skin(ui, rect, bench),
+                View::Map if bench.body.is_some() && bench.is_lim() => {
+                    solid::show_cut_and_parameters(ui, rect, bench);
+                }
                 View::Map if bench.body.is_some() => solid::show_cut(ui, rect, bench),
                 View::Map if bench.race.is_some() => hover = race::panes::show(ui, rect, bench),
                 View::Plot if bench.race.is_some() => race::curves::show(ui, rect, bench),

@@ -12,7 +12,7 @@ use crate::distortion::RestShapes;
 use crate::history::{Frames, Record, Run};
 use crate::layout::View;
 use crate::outline;
-use crate::words::{Nouns, SOLID, SURFACE};
+use crate::words::{Nouns, PLANAR, SOLID, SURFACE};
 
 /// Memory for the iterates of one run.
 const FRAME_BUDGET: usize = 192 << 20;
@@ -343,9 +343,18 @@ impl Bench {
         }
     }
 
+    /// Whether what is on show was made by locally injective mappings.
+    pub fn is_lim(&self) -> bool {
+        self.run.method.starts_with("lim")
+    }
+
     /// What things are called on this bench.
     pub fn nouns(&self) -> Nouns {
-        if self.body.is_some() { SOLID } else { SURFACE }
+        match &self.body {
+            Some(body) if body.solid.planar => PLANAR,
+            Some(_) => SOLID,
+            None => SURFACE,
+        }
     }
 
     /// Inverted or collapsed elements of the iterate on show, as drawn.

@@ -72,6 +72,15 @@ impl BenchHandle {
         }
     }
 
+    /// Puts triangles (m×3) of a plane z = constant on the bench, to be deformed in it: rest positions (n×3).
+    #[wasm_bindgen(js_name = setPlanar)]
+    pub fn set_planar(&self, positions: &[f64], triangles: &[u32]) {
+        let n = positions.len() / 3;
+        if triangles.iter().all(|i| (*i as usize) < n) {
+            self.change(|bench| bench.set_planar(positions, triangles));
+        }
+    }
+
     /// Begins a run of a method from a start, with an energy (kebab-case names as in the options).
     #[wasm_bindgen(js_name = beginRun)]
     pub fn begin_run(&self, method: &str, start: &str, energy: &str) {
@@ -79,7 +88,8 @@ impl BenchHandle {
     }
 
     /// Adds an iterate: ten numbers (iteration, energy, inverted, gradient norm, smallest σ, largest σ,
-    /// L-BFGS iterations, reweighted, seconds, iteration of the switch or −1), three numbers a phase (kind, count,
+    /// L-BFGS iterations, reweighted, seconds, iteration of the switch or −1; of locally injective mappings α, μ, σ,
+    /// positional error, barrier, handles that have arrived, and all), three numbers a phase (kind, count,
     /// milliseconds), and the map (n×2).
     #[wasm_bindgen(js_name = pushFrame)]
     pub fn push_frame(&self, numbers: &[f64], phases: &[f64], map: Vec<f32>) {
@@ -233,6 +243,21 @@ impl BenchHandle {
             let pairs = vertices.iter().zip(positions.as_chunks::<3>().0);
             body.targets.clear();
             body.targets.extend(
+                pairs
+                    .filter(|(v, _)| (**v as usize) < n)
+                    .map(|(v, p)| (*v, Vec3::from_array(p.map(|x| x as f32)))),
+            );
+        });
+    }
+
+    /// Where the newest step led vertices (k) that are not at their targets yet (k×3).
+    #[wasm_bindgen(js_name = setSubTargets)]
+    pub fn set_sub_targets(&self, vertices: &[u32], positions: &[f64]) {
+        self.body(|body| {
+            let n = body.solid.vertices;
+            let pairs = vertices.iter().zip(positions.as_chunks::<3>().0);
+            body.sub_targets.clear();
+            body.sub_targets.extend(
                 pairs
                     .filter(|(v, _)| (**v as usize) < n)
                     .map(|(v, p)| (*v, Vec3::from_array(p.map(|x| x as f32)))),

@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Rect, Sense, Stroke, pos2, vec2};
 use super::bench::Bench;
 use super::style;
 use crate::colour::curve_style;
-use crate::history::{Phase, PhaseKind};
+use crate::history::{LimStep, Phase, PhaseKind};
 use crate::scale::number;
 use crate::words::{citation, explain, handover, method_name, stage};
 
@@ -253,10 +253,46 @@ impl<'a> Column<'a> {
         if matches!(method, "wrapd" | "w-admm") {
             self.pair("weights", weights, &format!("Weights change only when that of some {} is off by more than γ = 1.5, equation (23); then the Laplacian is factored again and the L-BFGS history is dropped.", nouns.element));
         }
+        if let Some(lim) = record.lim {
+            self.parameters(lim);
+        }
         if let Some(words) = handover(run, record.switched_at) {
             self.words(&words);
         }
         self.rule();
+    }
+
+    /// What a step of a locally injective mapping was made with.
+    fn parameters(&mut self, lim: LimStep) {
+        self.pair("α, pull of the handles", &number(lim.alpha, 3), "Weight of the squared distances to the targets, equations (7) and (8): it only grows, with the ratio of energy and distance.");
+        let mu = match lim.mu {
+            0.0 => "0: definite as it is".into(),
+            mu => number(mu, 3),
+        };
+        self.pair("μ, shift", &mu, "What is added to the diagonal so that the matrix is positive definite (Levenberg and Marquardt).");
+        self.pair(
+            "σ, step",
+            &number(lim.sigma, 3),
+            "The part of the direction that was gone.",
+        );
+        let part = format!("{} of the way", number(1.0 / (1.0 + lim.mu * lim.mu), 3));
+        self.pair("sub-step (6)", &part, "How far the handles were led towards their targets: 1/(1 + μ²). The small circle on the way is where.");
+        let [arrived, all] = lim.arrived;
+        self.pair(
+            "handles at their targets",
+            &format!("{arrived} of {all}"),
+            "A handle that is there to one part in 10⁹ of the size is put there exactly, and held.",
+        );
+        self.pair(
+            "farthest (relative)",
+            &number(lim.error, 3),
+            "Distance of the farthest handle from its target, of a body of area or volume 1.",
+        );
+        self.pair(
+            "barrier βΣφ",
+            &number(lim.barrier, 3),
+            "The barrier’s energy, which the plotted energy leaves out. Without a barrier 0.",
+        );
     }
 
     /// A sentence or two over the width of the column.
@@ -278,7 +314,9 @@ impl<'a> Column<'a> {
         self.section("This iterate", "");
         let nouns = self.bench.nouns();
         let energy = number(record.energy, 7);
-        if self.bench.body.is_some() {
+        if self.bench.is_lim() {
+            self.pair("energy (relative)", &energy, "Deformation energy of a body scaled to an area or volume of 1, the barrier and the pull of the handles left out.");
+        } else if self.bench.body.is_some() {
             self.pair("energy (relative)", &energy, "Elastic energy over Young’s modulus times the volume at rest; over the volume alone for materials without moduli. While tetrahedra are inverted it is that of the local variables Z.");
         } else {
             let isometry = if self.bench.energy == "arap" {

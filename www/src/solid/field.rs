@@ -41,6 +41,15 @@ impl Field {
         }
     }
 
+    /// The same of triangles in a plane.
+    pub fn planar_caption(self) -> &'static str {
+        match self {
+            Self::Stretch => "stretch or squeeze, max(σ₁, 1/σ₂)",
+            Self::Volume => "area, relative to rest",
+            Self::Stress => "von Mises stress",
+        }
+    }
+
     /// Ticks of the legend.
     pub fn ticks(self) -> &'static [(f64, &'static str)] {
         match self {

@@ -8,6 +8,8 @@ pub mod stretch;
 
 use glam::{DVec3, Vec3};
 
+use crate::outline;
+
 /// Edges of the skin bent by more than this angle (in degrees) at rest are drawn as lines.
 const CREASE: f64 = 40.0;
 
@@ -38,6 +40,9 @@ pub struct Solid {
     pub low: Vec3,
     /// Highest corner of the bounding box at rest.
     pub high: Vec3,
+    /// Whether this is triangles of a plane z = constant: as `tetrahedra` with a fourth vertex
+    /// [`ABOVE`](stretch::ABOVE), and all of them the skin.
+    pub planar: bool,
 }
 
 impl Solid {
@@ -62,6 +67,25 @@ impl Solid {
             high: high.as_vec3(),
             tetrahedra,
             skin,
+            planar: false,
+        }
+    }
+
+    /// Of triangles (m×3) of a plane z = constant, with indices in range.
+    pub fn planar(positions: &[f64], triangles: &[u32]) -> Self {
+        let skin = triangles.as_chunks::<3>().0;
+        let tetrahedra: Vec<[u32; 4]> = skin
+            .iter()
+            .map(|&[a, b, c]| [a, b, c, stretch::ABOVE])
+            .collect();
+        let plain = Self::new(positions, &[], triangles);
+        Self {
+            rest: stretch::RestShapes::new(positions, &tetrahedra),
+            owners: (0..tetrahedra.len() as u32).collect(),
+            creases: outline::boundary_edges(triangles),
+            tetrahedra,
+            planar: true,
+            ..plain
         }
     }
 }

@@ -2,6 +2,10 @@
 
 use glam::{DMat3, DVec3};
 
+/// The fourth vertex of a triangle of a plane: above its first by one, wherever that is. Of the singular values one is
+/// then 1, so that worst stretch, volume (here area) and inversion are those of the triangle.
+pub const ABOVE: u32 = u32::MAX;
+
 /// Inverses of the rest edge matrices.
 #[derive(Debug, Clone, Default)]
 pub struct RestShapes {
@@ -57,7 +61,7 @@ impl RestShapes {
         let point = |v: u32| DVec3::from_slice(&positions[3 * v as usize..]);
         let inverses = tetrahedra
             .iter()
-            .map(|t| edges(t.map(point)).inverse())
+            .map(|t| edges(places(*t, point)).inverse())
             .collect();
         Self { inverses }
     }
@@ -70,13 +74,21 @@ impl RestShapes {
 
 /// The corners of a tetrahedron in positions (n×3).
 pub fn corners(tetrahedron: [u32; 4], positions: &[f32]) -> [DVec3; 4] {
-    tetrahedron.map(|v| {
+    places(tetrahedron, |v| {
         let p = 3 * v as usize;
         DVec3::new(
             f64::from(positions[p]),
             f64::from(positions[p + 1]),
             f64::from(positions[p + 2]),
         )
+    })
+}
+
+fn places(tetrahedron: [u32; 4], point: impl Fn(u32) -> DVec3) -> [DVec3; 4] {
+    let first = point(tetrahedron[0]);
+    tetrahedron.map(|v| match v {
+        ABOVE => first + DVec3::Z,
+        _ => point(v),
     })
 }
 
@@ -135,6 +147,23 @@ mod tests {
         let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
         assert_eq!(Stretches::of(mirror).worst(), None);
         assert_eq!(Stretches::of(DMat3::ZERO).worst(), None);
+    }
+
+    #[test]
+    fn a_triangle_of_the_plane_is_stretched_as_in_the_plane() {
+        let rest = [0.0, 0.0, 2.0, 1.0, 0.0, 2.0, 0.0, 1.0, 2.0];
+        let shapes = RestShapes::new(&rest, &[[0, 1, 2, ABOVE]]);
+        let at = |x: f32, y: f32| {
+            let moved = [0.0, 0.0, 2.0, x, 0.0, 2.0, 0.0, y, 2.0];
+            shapes.stretches(0, corners([0, 1, 2, ABOVE], &moved))
+        };
+        for (x, y, worst) in [(3.0, 2.0, 3.0), (0.5, 0.25, 4.0), (2.0, 0.25, 4.0)] {
+            let s = at(x, y);
+            assert!((s.worst().unwrap() - worst).abs() < 1e-6, "{s:?}");
+            assert!((s.volume() - f64::from(x * y)).abs() < 1e-6, "{s:?}");
+        }
+        assert_eq!(at(3.0, -2.0).worst(), None);
+        assert_eq!(at(0.5, -0.5).worst(), None);
     }
 
     #[test]

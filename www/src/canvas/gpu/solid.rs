@@ -153,6 +153,18 @@ impl Gpu {
         self.end();
     }
 
+    /// Draws triangles of a plane, those that are inverted on top.
+    pub fn draw_planar(&self, solid: SolidLook, look: Look) {
+        self.open(solid, look);
+        self.gl.disable(Gl::DEPTH_TEST);
+        self.wire(if look.wireframe { 0.75 } else { 0.30 });
+        self.paint(1.0, 1.0, 0.0, 1.0);
+        self.triangles(&self.solid.skin, 0, self.solid.skin.count);
+        self.triangles(&self.solid.inverted, 0, self.solid.inverted.count);
+        self.crease_lines(solid, look, 0.8);
+        self.end();
+    }
+
     /// Draws what is left of the solid under its plane, with the faces of the cut.
     pub fn draw_cut(&self, solid: SolidLook, look: Look) {
         let gl = &self.gl;

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use super::{Body, Grab};
 use crate::canvas::bench::Bench;
 use crate::canvas::style;
+use crate::colour::curve_style;
 use crate::solid::pick::{Lens, nearest_in_front};
 
 /// Handles of more vertices than this have a square of their own in their middle.
@@ -85,6 +86,7 @@ pub fn draw(
     }
     if newest {
         targets(painter, body, positions, bench, place);
+        sub_targets(painter, body, positions, bench, place);
     }
     if let Some(v) = body.cursor {
         let ring = place(at(positions, v));
@@ -128,6 +130,40 @@ fn targets(
         }
     }
     rest.iter().for_each(|(v, to)| mark(at(positions, *v), *to));
+}
+
+/// Where the newest step led handles that are not there yet, between where they are and their targets: one small
+/// circle a handle, in the colour of the method.
+fn sub_targets(
+    painter: &Painter,
+    body: &Body,
+    positions: &[f32],
+    bench: &Bench,
+    place: impl Fn(Vec3) -> Pos2,
+) {
+    let ink = curve_style("lim");
+    let ink = style::colour(if bench.theme.dark {
+        ink.dark
+    } else {
+        ink.light
+    });
+    let ground = style::colour(bench.theme.ground);
+    for handle in &body.handles {
+        let own = |v: u32| body.sub_targets.iter().find(|(w, _)| *w == v);
+        let pairs: Vec<(Vec3, Vec3)> = handle
+            .iter()
+            .filter_map(|&v| own(v).map(|(_, to)| (at(positions, v), *to)))
+            .collect();
+        if pairs.is_empty() {
+            continue;
+        }
+        let count = pairs.len() as f32;
+        let from: Vec3 = pairs.iter().map(|(from, _)| *from).sum::<Vec3>() / count;
+        let to: Vec3 = pairs.iter().map(|(_, to)| *to).sum::<Vec3>() / count;
+        let (from, to) = (place(from), place(to));
+        painter.line_segment([from, to], Stroke::new(1.6, ink));
+        painter.circle(to, 3.6, ground, Stroke::new(1.8, ink));
+    }
 }
 
 /// Draws the rubber band.

@@ -2,9 +2,11 @@
 
 mod cut;
 mod handles;
+mod parameters;
 mod skin;
 
 pub use cut::show as show_cut;
+pub use parameters::show_with_cut as show_cut_and_parameters;
 pub use skin::show as show_skin;
 
 use eframe::egui::{Pos2, Rect};
@@ -65,6 +67,8 @@ pub struct Body {
     pub cursor: Option<u32>,
     /// Where vertices are to go.
     pub targets: Vec<(u32, Vec3)>,
+    /// Where the newest step led those that are not there yet.
+    pub sub_targets: Vec<(u32, Vec3)>,
     /// The drag under way.
     pub grab: Option<Grab>,
     /// Vertex under the pointer.
@@ -150,6 +154,11 @@ impl Body {
         scratch.inverted.clear();
         for &t in &self.inverted {
             let [a, b, c, d] = solid.tetrahedra[t as usize];
+            if solid.planar {
+                let corners = [a, b, c].map(|v| corner(point(v), -1.0, 0.0));
+                scratch.inverted.extend(corners);
+                continue;
+            }
             for face in [[b, c, d], [a, d, c], [a, b, d], [a, c, b]] {
                 scratch
                     .inverted
@@ -220,11 +229,15 @@ impl Body {
     pub fn legend(&self) -> Legend {
         let (ramp, short): (fn(f64) -> colour::Rgb, _) = match self.field {
             Field::Stretch => (colour::cividis, "stretch or squeeze"),
+            Field::Volume if self.solid.planar => (colour::diverging, "area"),
             Field::Volume => (colour::diverging, "volume"),
             Field::Stress => (colour::cividis, "stress"),
         };
         Legend {
-            caption: self.field.caption(),
+            caption: match self.solid.planar {
+                true => self.field.planar_caption(),
+                false => self.field.caption(),
+            },
             short,
             ramp,
             position: match self.field {
@@ -254,17 +267,28 @@ impl Bench {
     /// Puts a solid on the bench and forgets the runs on the last one: rest positions (n×3),
     /// tetrahedra (m×4), skin triangles (k×3), indices in range.
     pub fn set_solid(&mut self, positions: &[f64], tetrahedra: &[u32], skin: &[u32]) {
+        self.set_body(positions, Solid::new(positions, tetrahedra, skin));
+    }
+
+    /// The same with triangles (m×3) of a plane z = constant.
+    pub fn set_planar(&mut self, positions: &[f64], triangles: &[u32]) {
+        self.set_body(positions, Solid::planar(positions, triangles));
+    }
+
+    fn set_body(&mut self, positions: &[f64], solid: Solid) {
         let before = self.body.take();
         if before.is_none() {
             // What is inside shows through a plain skin best.
             self.tinted = false;
         }
-        let solid = Solid::new(positions, tetrahedra, skin);
         let same = before.as_ref().is_some_and(|b| {
             b.solid.tetrahedra == solid.tetrahedra && b.solid.vertices == solid.vertices
         });
         if !same {
-            self.orbit = Orbit::around(positions).reaching(REACH);
+            self.orbit = match solid.planar {
+                true => Orbit::above(positions),
+                false => Orbit::around(positions).reaching(REACH),
+            };
         }
         let body = before.map_or_else(Body::default, |b| Body {
             field: b.field,

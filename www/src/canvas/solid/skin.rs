@@ -28,12 +28,16 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     };
     body.view = Some((rect, lens));
     let look = bench.look(ui.pixels_per_point());
-    let tint = if bench.tinted { 0.9 } else { 0.0 };
+    let planar = body.solid.planar;
+    let tint = if bench.tinted || planar { 0.9 } else { 0.0 };
     let solid = body.look(&bench.orbit, rect.aspect_ratio(), tint, None);
     ui.painter().add(egui::PaintCallback {
         rect,
         callback: std::sync::Arc::new(eframe::egui_glow::CallbackFn::new(move |_, _| {
-            gpu::with(|gpu| gpu.draw_skin(solid, look));
+            gpu::with(|gpu| match planar {
+                true => gpu.draw_planar(solid, look),
+                false => gpu.draw_skin(solid, look),
+            });
         })),
     });
     handles::plane_outline(ui.painter(), rect, &lens, bench, &body);
@@ -48,16 +52,18 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         );
     }
     handles::rubber(ui.painter(), ui, bench, &body);
-    if bench.tinted {
+    if bench.tinted || planar {
         legend::ramp(ui.painter(), rect, bench, &body.legend());
     } else {
         let hint = hint(bench, &body);
         let at = pos2(rect.left() + 14.0, rect.bottom() - 12.0);
         style::label(ui.painter(), bench, at, Align2::LEFT_BOTTOM, hint, true);
     }
-    let size = format!("{} tetrahedra", whole(body.solid.tetrahedra.len()));
+    let title = if planar { "Figure" } else { "Solid" };
+    let elements = if planar { "triangles" } else { "tetrahedra" };
+    let size = format!("{} {elements}", whole(body.solid.tetrahedra.len()));
     let right = legend::inverted_key(ui.painter(), rect, bench, body.inverted.len());
-    style::heading(ui.painter(), bench, rect, right, "Solid", &size);
+    style::heading(ui.painter(), bench, rect, right, title, &size);
     bench.body = Some(body);
 }
 
@@ -67,7 +73,10 @@ fn hint(bench: &Bench, body: &Body) -> &'static str {
     } else if body.box_tool {
         "drag a box around the vertices to pin"
     } else if bench.run.records.len() < 2 || body.over.is_some() {
-        "drag a square or the skin; click pins a vertex; drag beside it to turn"
+        match body.solid.planar {
+            true => "drag a square or the figure; click pins a vertex",
+            false => "drag a square or the skin; click pins a vertex; drag beside it to turn",
+        }
     } else {
         ""
     }
@@ -101,9 +110,13 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
         }
         body.grab = Some(Grab::Camera);
         let d = touch.translation_delta;
-        bench
-            .orbit
-            .drag(Vec2::new(d.x, d.y), rect.size().min_elem());
+        let d = Vec2::new(d.x, d.y);
+        if body.solid.planar {
+            let delta = lens.drag(bench.orbit.centre, Vec2::ZERO, d);
+            bench.orbit.shift(delta);
+        } else {
+            bench.orbit.drag(d, rect.size().min_elem());
+        }
     } else if response.drag_started() {
         body.grab = Some(begin(bench, &body, lens, by_main, shift, origin, local));
         // Only a handle can be turned; the skin is pulled, whatever key is held.
@@ -125,6 +138,12 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
                     let d = local(p) - from;
                     bench.events.push(Event::Turn((d.x + d.y) / RADIAN));
                 }
+            }
+            Some(Grab::Camera) if body.solid.planar => {
+                let d = response.drag_delta();
+                let centre = bench.orbit.centre;
+                let delta = lens.drag(centre, Vec2::ZERO, Vec2::new(d.x, d.y));
+                bench.orbit.shift(delta);
             }
             Some(Grab::Camera) => {
                 let d = response.drag_delta();
