@@ -429,7 +429,8 @@ export class Deform extends Mode {
     const other = isFigure(solid) !== Boolean(this.figure);
     const next = { solid, tetrahedra: other ? (isFigure(solid) ? 2000 : 3000) : tetrahedra };
     Object.assign(this.wanted, next);
-    if (isFigure(solid)) this.wanted.method = 'lim';
+    // With Dirichlet’s energy a barrier makes the most difference.
+    if (isFigure(solid)) Object.assign(this.wanted, { method: 'lim', energy: other ? 'dirichlet' : this.wanted.energy });
     if (!presetsOf(isFigure(solid)).includes(this.wanted.preset)) this.wanted.preset = isFigure(solid) ? 'drag' : 'twist';
     if (!this.whenReady(() => this.open(next))) return;
     await this.open(next, { busy: 'Building the solid' });

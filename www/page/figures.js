@@ -124,10 +124,10 @@ const around = (x, y, r) => within((u, v) => Math.hypot(u - x, v - y) < r);
 export const FIGURES = {
   gingerbread: {
     title: 'Gingerbread man (flat)',
-    description: 'A figure in the plane: drag a hand where it hardly goes',
+    description: 'A figure in the plane: a hand is pressed through the body',
     make: gingerbread,
     held: [around(-0.24, -0.72, 0.09), around(0.24, -0.72, 0.09), around(-0.6, 0.16, 0.08), around(0.6, 0.16, 0.08)],
-    path: [[0, 0], [-0.35, 0.5], [-1.05, 0.45], [-0.95, -0.55]],
+    path: [[0, 0], [-0.8, 0.05]],
   },
   square: {
     title: 'Square (flat)',

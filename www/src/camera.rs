@@ -79,7 +79,7 @@ impl Orbit {
             ..orbit
         };
         let mut upright = upright.centred(positions);
-        upright.fit *= 0.88;
+        upright.fit *= 0.76;
         upright
     }
 

@@ -176,8 +176,13 @@ fn draw(
     };
     if steps().any(|(_, value)| value > 0.0) {
         let rows = (area.height() / (24.0 * text)).floor().max(1.0) as usize;
+        // None over another, nor over the name of zero.
+        let mut below = area.bottom();
         for value in axis.ticks(rows) {
-            mark(y(value), power_of_ten(value));
+            if floor == 0.0 && below == area.bottom() || below - y(value) >= 11.0 * text {
+                below = y(value);
+                mark(below, power_of_ten(value));
+            }
         }
     }
     if floor > 0.0 {

@@ -40,7 +40,9 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             });
         })),
     });
-    handles::plane_outline(ui.painter(), rect, &lens, bench, &body);
+    if !planar {
+        handles::plane_outline(ui.painter(), rect, &lens, bench, &body);
+    }
     if let Some(frame) = bench.map() {
         handles::draw(
             ui.painter(),
