@@ -2,6 +2,7 @@
 
 use super::error::{Fallible, invalid_option};
 use crate::deformation::{DeformationMethod, DeformationOptions, Material};
+use crate::mixed_integer::MixedIntegerOptions;
 use crate::parameterization::ParameterizationOptions;
 use js_sys::{Object, Reflect};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -66,6 +67,11 @@ pub(super) fn deformation_options(value: &JsValue) -> Fallible<DeformationOption
     })
 }
 
+/// `undefined` and `null` stand for the defaults.
+pub(super) fn mixed_integer_options(value: &JsValue) -> Fallible<MixedIntegerOptions> {
+    options(value)
+}
+
 fn options<T: Default + Serialize + DeserializeOwned>(value: &JsValue) -> Fallible<T> {
     if value.is_undefined() || value.is_null() {
         return Ok(T::default());
@@ -110,6 +116,12 @@ pub fn default_options() -> Fallible<JsValue> {
 #[wasm_bindgen(js_name = defaultDeformationOptions, unchecked_return_type = "DeformationSettings")]
 pub fn default_deformation_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&DeformationSettings::default()).map_err(JsValue::from)
+}
+
+/// The default options of a mixed-integer problem.
+#[wasm_bindgen(js_name = defaultMixedIntegerOptions, unchecked_return_type = "MixedIntegerOptions")]
+pub fn default_mixed_integer_options() -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(&MixedIntegerOptions::default()).map_err(JsValue::from)
 }
 
 #[wasm_bindgen(typescript_custom_section)]

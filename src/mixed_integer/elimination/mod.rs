@@ -21,6 +21,7 @@ use rows::Rows;
 
 /// What became of a constraint row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case", tag = "outcome", content = "unknown")]
 pub enum RowOutcome {
     /// It was solved for this unknown.
