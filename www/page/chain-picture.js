@@ -170,7 +170,7 @@ export class ChainPicture {
       if (size < 0.5) return;
       const wide = Math.min(0.6 * step, 22);
       const title = svg('title', {}, `point ${i + 1} moved by ${number(moved, 3)}`);
-      parts.push(svg('rect', { class: changedIn(now).has(i) ? 'bar new' : 'bar', x: px(this.#x(i) - wide / 2), y: px(base - size), width: px(wide), height: px(size) }, title));
+      parts.push(svg('rect', { class: changedIn(now).has(i) ? 'column new' : 'column', x: px(this.#x(i) - wide / 2), y: px(base - size), width: px(wide), height: px(size) }, title));
     });
     return parts;
   }

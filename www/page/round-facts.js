@@ -72,7 +72,7 @@ export function drawFacts(session, shown) {
     row.querySelector('.energy').textContent = number(value, 3);
     const more = least > 1e-9 ? (100 * (value - least)) / least : 0;
     row.querySelector('.more').textContent = rounding === 'lattice' ? (sure ? 'proven' : 'not proven') : more < 0.05 ? 'the same' : `+${whole(more)} %`;
-    row.querySelector('.bar').style.width = `${(100 * value) / most}%`;
+    row.querySelector('.amount').style.width = `${(100 * value) / most}%`;
     row.classList.toggle('chosen', session.rounding === rounding);
     row.querySelector('button').setAttribute('aria-pressed', String(session.rounding === rounding));
   }
@@ -97,7 +97,7 @@ export function makeTable(choose) {
     const track = row.insertCell();
     track.className = 'track';
     track.setAttribute('aria-hidden', 'true');
-    track.append(Object.assign(document.createElement('span'), { className: 'bar' }));
+    track.append(Object.assign(document.createElement('span'), { className: 'amount' }));
     row.insertCell().className = 'more';
   }
 }

@@ -151,7 +151,7 @@ describe('a chain', () => {
   onPage('shows the order of the roundings and how far each step spreads', { query: '?mode=round&problem=chain&updates=three-level', viewport: { width: 1200, height: 760 } }, async (page) => {
     const expected = solved(CHAIN);
     assert.deepEqual(await cells(page, '.energy'), ROUNDINGS.map((name) => expected[name].above.toPrecision(3)));
-    assert.equal(await page.locator('svg .bar').count(), 0);
+    assert.equal(await page.locator('.column').count(), 0);
     for (let k = 1; k <= 3; k++) {
       await page.click('#step');
       await shownIs(page, k);
@@ -161,7 +161,7 @@ describe('a chain', () => {
     }
     const { x } = await state(page);
     assert.equal(x.filter((v) => Math.abs(v - Math.round(v)) < 1e-9).length, 3);
-    assert.ok(await page.locator('svg .bar').count() >= 1);
+    assert.ok(await page.locator('.column').count() >= 1);
     await page.fill('#history', '1');
     assert.match(await page.textContent('#status'), /step 1 of 16/);
     assert.match(await page.textContent('#spoken'), /greedy, step 1 of 16, energy \+[\d.e-]+, 1 of 16 rounded/);
