@@ -1,6 +1,7 @@
 //! The sum of every room's error, for callers that cross several rooms.
 
 use crate::mesh::{MeshError, io::ParseError};
+use crate::mixed_integer::MixedIntegerError;
 use crate::optim::{BuildError, SolveError};
 
 /// Any error of this crate. Each variant wraps the typed error of the room that raised it.
@@ -20,6 +21,9 @@ pub enum Error {
     /// A step failed.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A mixed-integer problem is wrong, or has no solution.
+    #[error(transparent)]
+    MixedInteger(#[from] MixedIntegerError),
 }
 
 impl Error {
@@ -31,6 +35,7 @@ impl Error {
             Error::Mesh(e) => e.code(),
             Error::Build(e) => e.code(),
             Error::Solve(e) => e.code(),
+            Error::MixedInteger(e) => e.code(),
         }
     }
 }

@@ -454,3 +454,54 @@ fn dumped_parametrizations_reach_the_known_optima() {
         assert!(report.energy - bound < 1e-4, "{name}: {bound}");
     }
 }
+
+/// Rows of two unknowns are solved first, longer ones rewritten once: with integers and reals, factors, both
+/// signs, closed chains, a constant at the end of one, and other constants afterwards.
+#[test]
+fn chains_of_pairs_in_longer_rows_are_what_elimination_row_by_row_makes_of_them() {
+    let goal: Vec<f64> = (0..14).map(|i| (f64::from(i) * 1.7).sin() * 3.0).collect();
+    let rows: [miqp::Row; 10] = [
+        (&[(0, 1.0), (3, 1.0), (5, -1.0), (8, 2.0), (12, 1.0)], -1.0),
+        (&[(0, 1.0), (1, 1.0)], 1.0),
+        (&[(1, 2.0), (2, -2.0)], 4.0),
+        (&[(2, -1.0), (3, 1.0)], 0.0),
+        (&[(0, 1.0), (3, 1.0)], -1.0),
+        (&[(4, 3.0), (5, 1.5)], -6.0),
+        (&[(5, 1.0), (6, 4.0)], 2.0),
+        (&[(7, 1.0), (8, -1.0)], 5.0),
+        (&[(9, 2.0)], 3.0),
+        (
+            &[(4, 1.0), (9, 1.0), (10, 0.5), (11, -1.0), (13, 1.0)],
+            0.25,
+        ),
+    ];
+    let problem = miqp::nearest(&goal, &rows, &[0, 1, 2, 3, 6, 7, 8]);
+    let by_row = MixedIntegerOptions {
+        reorder: false,
+        ..options(Rounding::Lattice)
+    };
+    let mut pairs = solve(&problem, Rounding::Lattice).expect("feasible");
+    let mut by_row = solve_with(&problem, by_row).expect("feasible");
+    let mut constants = problem.constants().to_vec();
+    for round in 0..3 {
+        is_sound(&pairs);
+        let (a, b) = (pairs.solution(), by_row.solution());
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() < 1e-9, "{round}: {a} {b}");
+        }
+        assert_eq!(pairs.report().redundant_rows.len(), 1);
+        constants[2] += 2.0;
+        constants[4] -= 1.0;
+        constants[5] += 0.7;
+        constants[8] -= 1.0;
+        for solver in [&mut pairs, &mut by_row] {
+            solver.resolve(None, Some(&constants)).expect("feasible");
+            solver
+                .run(|_| {}, &CancelToken::default())
+                .expect("positive definite");
+        }
+    }
+    // a closed chain that does not close
+    constants[4] += 1.0;
+    assert!(pairs.resolve(None, Some(&constants)).is_err());
+}

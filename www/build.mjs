@@ -38,7 +38,7 @@ async function buildCanvas(force) {
 /** Copies what needs no building. */
 function assemble() {
   const copy = (from, to = from.replace(/^www\//, '')) => cpSync(join(root, from), join(dist, to), { recursive: true });
-  for (const name of ['index.html', 'style.css', 'icon.svg', 'page']) copy(`www/${name}`);
+  for (const name of ['index.html', 'style.css', 'round.css', 'icon.svg', 'page']) copy(`www/${name}`);
   copy('www/assets/fonts', 'fonts');
   for (const name of ['start.bin', 'start-deform.bin']) if (existsSync(join(root, 'www/assets', name))) copy(`www/assets/${name}`, name);
   rmSync(join(dist, 'fonts/subset.py'), { force: true });

@@ -112,10 +112,60 @@ export function features({ size, length, terms, times, seed }) {
       system.row([[somewhere(curves[k]), 1], ...others], jump);
     }
   }
-  // shuffled: the order in which a mesh happens to be visited
-  for (let k = system.rows.length - 1; k > 0; k--) {
-    const other = Math.floor(next() * (k + 1));
-    [system.rows[k], system.rows[other]] = [system.rows[other], system.rows[k]];
-  }
+  shuffle(system.rows, (count) => Math.floor(next() * count));
   return system.text();
+}
+
+/**
+ * A gear, cut open along every edge of its `teeth`: sectors of `width` columns and of different depths (about `depth`
+ * rows of vertices). Both sides of an edge are feature curves: all their vertices are integers, equal along the curve, and
+ * differ across the cut by the integer of the seam, which every vertex says again. Over each `span` teeth the widths
+ * add up to a number, which is said `times` times for other vertices of the same curves: thousands of integer rows that
+ * depend on each other, short and long ones, shuffled.
+ */
+export function gear({ teeth, width, depth, span, times, seed }) {
+  const next = random(seed);
+  const some = (count) => Math.floor(next() * count);
+  const depths = Array.from({ length: teeth }, () => Math.max(2, Math.round(depth * (0.15 + 1.7 * next() ** 2))));
+  const begin = [0];
+  for (const rows of depths) begin.push(begin.at(-1) + rows * width);
+  const vertices = begin.at(-1);
+  const system = new System(vertices + teeth);
+  const at = (tooth, column, row) => begin[tooth] + row * width + column;
+  const [left, right] = [(tooth, row) => at(tooth, 0, row), (tooth, row) => at(tooth, width - 1, row)];
+  for (let i = 0; i < system.unknowns; i++) system.diagonal(i, 1e-3);
+  depths.forEach((rows, tooth) => {
+    const seam = vertices + tooth;
+    const after = (tooth + 1) % teeth;
+    system.integers.push(seam);
+    for (let row = 0; row < rows; row++) {
+      for (let column = 0; column < width; column++) {
+        const pull = 0.27 + 0.15 * Math.sin(3 * column + 5 * row + tooth);
+        if (column + 1 < width) system.edge(at(tooth, column, row), at(tooth, column + 1, row), pull);
+        if (row + 1 < rows) system.edge(at(tooth, column, row), at(tooth, column, row + 1), 0.2 * pull - 0.06);
+      }
+      system.integers.push(left(tooth, row), right(tooth, row));
+      // closed loops of conditions, so that one of each is redundant
+      for (const side of [left, right]) system.row([[side(tooth, row), 1], [side(tooth, (row + 1) % rows), -1]]);
+      if (row < depths[after]) system.row([[left(after, row), 1], [right(tooth, row), -1], [seam, -1]]);
+    }
+  });
+  for (let from = 0; from + span <= teeth; from += span) {
+    for (let again = 0; again < times; again++) {
+      const terms = Array.from({ length: span }, (_, k) => from + k).flatMap((tooth) => [
+        [right(tooth, some(depths[tooth])), 1], [left(tooth, some(depths[tooth])), -1],
+      ]);
+      system.row(terms, -Math.round(1.3 * span));
+    }
+  }
+  shuffle(system.rows, some);
+  return system.text();
+}
+
+/** In the order in which a mesh happens to be visited. */
+function shuffle(rows, some) {
+  for (let k = rows.length - 1; k > 0; k--) {
+    const other = some(k + 1);
+    [rows[k], rows[other]] = [rows[other], rows[k]];
+  }
 }

@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { existsSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { say } from '../lib/progress.mjs';
-import { features, torus } from './miqp-problems.mjs';
+import { features, gear, torus } from './miqp-problems.mjs';
 import { table } from './table.mjs';
 
 /** The report of a run at the lower quartile of the times; of one that is refused: what it said. */
@@ -49,10 +49,15 @@ export function measureMiqp(bench, { folder, quick }) {
     for (const [rounding, args] of ROUNDINGS) systems.push({ name, rounding, ...reportOf(bench, file, args, repeat) });
   }
   say('measuring the order of constraint rows');
-  const order = [30, 150].flatMap((times) => {
-    const file = written(bench, 'features', features({ size: 100, length: 12, terms: 20, times, seed: 1 }));
+  const many = [
+    ...[30, 150].map((times) => [`${times} rows a junction`, features({ size: 100, length: 12, terms: 20, times, seed: 1 })]),
+    ['gear, 3 teeth a row', gear({ teeth: 60, width: 4, depth: 60, span: 3, times: 60, seed: 3 })],
+    ['gear, 2 teeth a row', gear({ teeth: 60, width: 3, depth: 60, span: 2, times: 100, seed: 3 })],
+  ];
+  const order = many.flatMap(([problem, text]) => {
+    const file = written(bench, 'features', text);
     return [['shortest first', []], ['as given', ['--no-reordering']]].map(([name, args]) => ({
-      name: `${times} a junction, ${name}`,
+      name: `${problem}, ${name}`,
       ...reportOf(bench, file, args, quick ? 3 : 11),
     }));
   });

@@ -1,8 +1,8 @@
 // The client's end of one worker: calls and their answers, its death and its restart.
 import { FATAL, FoldfreeError, fromPlain } from './error.js';
 import { startWorker, threadsAvailable, type WorkerPort } from './platform.js';
-import type { CallName, Calls, FromWorker, Loaded, ToWorker } from './protocol.js';
-import type { Frame, Step, StepReport } from './types.js';
+import type { AnyFrame, AnyReport, CallName, Calls, FromWorker, Loaded, ToWorker } from './protocol.js';
+import type { Progress, Step, StepReport } from './types.js';
 
 /** Where the parts are, and how many threads to use. */
 export interface LoadOptions {
@@ -33,7 +33,10 @@ interface Pending {
 }
 
 /** What a run does with a frame. The next is sent when this has returned, or its promise is done. */
-export type FrameListener<F extends Frame = Step> = (frame: F, reports: StepReport[]) => void | Promise<void>;
+export type FrameListener<F extends Progress = Step, R extends Progress = StepReport> = (frame: F, reports: R[]) => void | Promise<void>;
+
+/** A listener of any kind of run: which kind is known to who made it. */
+export type AnyListener = FrameListener<AnyFrame, AnyReport>;
 
 const DEFAULT_THREAD_TIMEOUT = 5000;
 const MOST_THREADS = 8;
@@ -50,7 +53,7 @@ export class Client {
   #nextId = 1;
   #channel: BroadcastChannel | undefined;
   readonly #pending = new Map<number, Pending>();
-  readonly #runs = new Map<number, FrameListener<Frame>>();
+  readonly #runs = new Map<number, AnyListener>();
   /** What the listeners of runs are doing with the newest frame; what they threw is in it. */
   readonly #listening = new Map<number, Promise<unknown>>();
   /** Runs that were cancelled, perhaps before the worker has heard of them. */
@@ -83,7 +86,7 @@ export class Client {
   }
 
   /** A run: `listener` gets its frames, one at a time. */
-  async run(args: Calls['run'][0], generation: number, listener: FrameListener<Frame> | undefined): Promise<Frame> {
+  async run(args: Calls['run'][0], generation: number, listener: AnyListener | undefined): Promise<AnyFrame> {
     await this.start();
     this.#mustBe(generation);
     if (listener) this.#runs.set(args.run, listener);

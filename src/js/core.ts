@@ -3,6 +3,7 @@ import * as bindings from './single/foldfree.js';
 import { Core } from './engine.js';
 
 export { Core, CoreMesh, CoreSolver } from './engine.js';
+export { CoreMixedInteger } from './mixed-integer-engine.js';
 export { CoreDeformation, CoreSolid } from './solid-engine.js';
 export { FoldfreeError } from './error.js';
 export type * from './types.js';

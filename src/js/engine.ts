@@ -4,10 +4,12 @@ import { FoldfreeError } from './error.js';
 import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needLandmarks, needSolidFormat } from './input.js';
 import { CoreDeformation, CoreSolid } from './solid-engine.js';
 import { guard } from './guard.js';
+import { CoreMixedInteger } from './mixed-integer-engine.js';
+import { needProblem } from './mixed-integer-input.js';
 import {
   dispose,
   type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type LimDeformOptions, type LimOptions, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
-  type ParameterizeOptions, type Result, type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type SolverInfo,
+  type MixedIntegerData, type MixedIntegerOptions, type MixedIntegerResult, type ParameterizeOptions, type Result, type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type SolverInfo,
   type Step, type StepReport, type Texture,
 } from './types.js';
 
@@ -232,6 +234,26 @@ export class Core {
   /** Checks a deformation that came from anywhere: `positions` is n × 3, interleaved; `solid` is the rest shape. */
   checkSolid(solid: CoreSolid, positions: Float64Array): SolidCertificate {
     return guard(() => this.#bindings.checkSolid(solid.handle, positions));
+  }
+
+  /** Checks a mixed-integer problem, eliminates its constraints, factors, and solves it without integrality. */
+  mixedInteger(data: MixedIntegerData, options: Partial<MixedIntegerOptions> = {}): CoreMixedInteger {
+    return CoreMixedInteger.make(this.#bindings, needProblem(data), options);
+  }
+
+  /** Solves a mixed-integer problem. */
+  solveMixedInteger(data: MixedIntegerData, options: Partial<MixedIntegerOptions> = {}): MixedIntegerResult {
+    const solver = this.mixedInteger(data, options);
+    try {
+      return solver.run();
+    } finally {
+      solver.free();
+    }
+  }
+
+  /** The options of a mixed-integer problem with the values they have when left out. */
+  defaultMixedIntegerOptions(): MixedIntegerOptions {
+    return guard(() => this.#bindings.defaultMixedIntegerOptions());
   }
 
   /** The options of a deformation with the values they have when left out. */

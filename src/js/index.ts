@@ -3,16 +3,20 @@ import { Client, type LoadOptions } from './client.js';
 import { FoldfreeError } from './error.js';
 import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needHandles, needSolidFormat } from './input.js';
 import { Mesh, Solid } from './mesh.js';
+import { MixedInteger } from './mixed-integer.js';
+import { needProblem } from './mixed-integer-input.js';
 import { Deformation, Solver, abortable } from './solver.js';
 import {
   dispose,
-  type Certificate, type DeformOptions, type FramePrecision, type LimDeformOptions, type MeshData, type MeshFormat, type ParameterizeOptions,
+  type Certificate, type DeformOptions, type FramePrecision, type LimDeformOptions, type MeshData, type MeshFormat, type MixedIntegerData,
+  type MixedIntegerOptions, type MixedIntegerResult, type ParameterizeOptions,
   type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat,
 } from './types.js';
 
 export { FoldfreeError } from './error.js';
 export type { FrameListener, LoadOptions } from './client.js';
 export { Mesh, Solid } from './mesh.js';
+export { MixedInteger } from './mixed-integer.js';
 export { Deformation, Solver } from './solver.js';
 export type { RunOptions } from './solver.js';
 export type * from './types.js';
@@ -26,6 +30,9 @@ export interface CallOptions {
   /** On abort, end the worker at once instead of waiting for its current step. The next call starts another. */
   terminateOnAbort?: boolean;
 }
+
+/** What a call to `mixedInteger` takes besides the options of the method. */
+export type MixedIntegerCallOptions = Partial<MixedIntegerOptions> & Omit<CallOptions, 'frames'>;
 
 /** Loads the library into a worker. */
 export async function load(options: LoadOptions = {}): Promise<Foldfree> {
@@ -140,6 +147,38 @@ export class Foldfree {
     };
     const { generation, info } = await wait(make());
     return new Deformation(client, generation, solver, info, wait, signal) as Deformation | Deformation<Certificate>;
+  }
+
+  /**
+   * Checks a mixed-integer problem (arrays, or a `.sys` file, gzipped or not), eliminates its constraints, factors,
+   * and solves it without integrality: all that comes before the first rounding. What is given is copied.
+   */
+  async mixedInteger(data: MixedIntegerData, options: MixedIntegerCallOptions = {}): Promise<MixedInteger> {
+    const { signal, terminateOnAbort = false, ...rest } = options;
+    const given = needProblem(data);
+    signal?.throwIfAborted();
+    const client = this.#client;
+    const wait = abortable(client, signal, terminateOnAbort);
+    const solver = client.newId();
+    const make = async () => {
+      const input = 'bytes' in given ? { bytes: await unzipped(given.bytes) } : given;
+      await client.start();
+      const { generation } = client;
+      return { generation, info: await client.call('mixedInteger', { solver, input, options: rest }) };
+    };
+    const { generation, info } = await wait(make());
+    return new MixedInteger(client, generation, solver, info, wait, signal);
+  }
+
+  /** Solves a mixed-integer problem; `mixedInteger` is the same step by step. */
+  async solveMixedInteger(data: MixedIntegerData, options: MixedIntegerCallOptions = {}): Promise<MixedIntegerResult> {
+    const solver = await this.mixedInteger(data, options);
+    try {
+      await solver.run({ minInterval: Infinity });
+      return await solver.result();
+    } finally {
+      solver.free();
+    }
   }
 
   /**

@@ -1,7 +1,9 @@
 // What the client and the worker say to each other.
 import type { PlainError } from './error.js';
+import type { MixedIntegerInput } from './mixed-integer-input.js';
 import type {
-  Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, LimDeformOptions, MeshArrays, MeshFormat, MeshInfo, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
+  Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, LimDeformOptions, MeshArrays, MeshFormat, MeshInfo, MixedIntegerChange,
+  MixedIntegerInfo, MixedIntegerOptions, MixedIntegerReport, MixedIntegerResult, MixedIntegerStep, MixedIntegerStepReport, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
   SolidCertificate, SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
 } from './types.js';
 
@@ -12,6 +14,11 @@ export interface Loaded {
   shapes: ShapeInfo[];
   solidShapes: ShapeInfo[];
 }
+
+/** What a step leads to. */
+export type AnyFrame = Frame | MixedIntegerStep;
+/** The same without positions or unknowns. */
+export type AnyReport = StepReport | MixedIntegerStepReport;
 
 /** The calls a worker answers: arguments and result. */
 export interface Calls {
@@ -35,8 +42,12 @@ export interface Calls {
   setField: [{ solver: number; field: Field }, undefined];
   checkSolid: [{ mesh: number; positions: Float64Array }, SolidCertificate];
   deformed: [{ solver: number }, DeformResult<SolidCertificate | Certificate>];
-  step: [{ solver: number }, Frame];
-  run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, Frame];
+  mixedInteger: [{ solver: number; input: MixedIntegerInput; options: Partial<MixedIntegerOptions> }, MixedIntegerInfo];
+  resolve: [{ solver: number; change: MixedIntegerChange }, MixedIntegerStep];
+  solved: [{ solver: number }, MixedIntegerResult];
+  mixedIntegerReport: [{ solver: number }, MixedIntegerReport];
+  step: [{ solver: number }, AnyFrame];
+  run: [{ solver: number; run: number; maxIterations: number; minInterval: number }, AnyFrame];
   weights: [{ solver: number }, Float32Array];
   result: [{ solver: number }, Result];
   exportObj: [{ solver: number }, Uint8Array];
@@ -63,4 +74,4 @@ export type FromWorker =
   | { progress: { loaded: number; total: number } }
   /** The wasm is there, the pool of threads starts: from here on the time-out counts. */
   | { starting: true }
-  | { run: number; frame: Frame; reports: StepReport[] };
+  | { run: number; frame: AnyFrame; reports: AnyReport[] };

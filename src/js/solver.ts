@@ -1,18 +1,18 @@
 // What is being computed in the worker: steps, runs, and their ends.
-import type { Client, FrameListener } from './client.js';
+import type { AnyListener, Client, FrameListener } from './client.js';
 import { FoldfreeError } from './error.js';
 import { needTargets } from './input.js';
 import type { CallName, Calls } from './protocol.js';
 import {
   dispose,
-  type Certificate, type DeformInfo, type DeformResult, type DeformStep, type Field, type Frame, type MeshArrays, type Result,
-  type SolidCertificate, type SolverInfo, type Step, type Targets,
+  type Certificate, type DeformInfo, type DeformResult, type DeformStep, type Field, type Frame, type MeshArrays, type Progress, type Result,
+  type SolidCertificate, type SolverInfo, type Step, type StepReport, type Targets,
 } from './types.js';
 
 /** What `Solver.run` takes. */
-export interface RunOptions<F extends Frame = Step> {
+export interface RunOptions<F extends Progress = Step, R extends Progress = StepReport> {
   /** Gets the newest iterate and the reports of all iterations since the last frame. */
-  onFrame?: FrameListener<F>;
+  onFrame?: FrameListener<F, R>;
   /** Stop after so many iterations more. */
   maxIterations?: number;
   /** Milliseconds between frames, at least (default 0: as fast as they are taken). */
@@ -24,10 +24,9 @@ export type Wait = <T>(work: Promise<T>) => Promise<T>;
 /** Calls that need nothing but the solver. */
 type Plain = { [K in CallName]: Calls[K][0] extends { solver: number } ? ({ solver: number } extends Calls[K][0] ? K : never) : never }[CallName];
 
-/** An iterative computation; `F` is what a step leads to. */
-abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
+/** An iterative computation; `F` is what a step leads to, `R` what is known of those that are not sent. */
+export abstract class Stepper<F extends Progress, R extends Progress = StepReport> implements AsyncIterable<F> {
   readonly start: F;
-  readonly notes: string[];
   readonly setupSeconds: number;
   readonly #client: Client;
   readonly #generation: number;
@@ -35,14 +34,14 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
   readonly #wait: Wait;
   readonly #signal: AbortSignal | undefined;
   #run: number | undefined;
-  #status: F['status'];
+  #status: Progress['status'];
   #cancelled = false;
   #freed = false;
 
   /** @internal */
   constructor(
     client: Client, generation: number, id: number,
-    info: { start: F; notes: string[]; setupSeconds: number }, wait: Wait, signal: AbortSignal | undefined,
+    info: { start: F; setupSeconds: number }, wait: Wait, signal: AbortSignal | undefined,
   ) {
     this.#client = client;
     this.#generation = generation;
@@ -50,19 +49,18 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
     this.#wait = wait;
     this.#signal = signal;
     this.start = info.start;
-    this.notes = info.notes;
     this.setupSeconds = info.setupSeconds;
     this.#status = info.start.status;
   }
 
   /** The status after the newest step. */
-  get status(): F['status'] {
+  get status(): Progress['status'] {
     return this.#status;
   }
 
   /** One iteration of the method. */
   async step(): Promise<F> {
-    const step = (await this.call('step')) as F;
+    const step = (await this.call('step')) as unknown as F;
     this.#status = step.status;
     return step;
   }
@@ -71,7 +69,7 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
    * Steps until the status is no longer `running`, without waiting for this thread: frames come as fast
    * as `onFrame` takes them, iterations as fast as they can be computed. Resolves with the last step.
    */
-  async run({ onFrame, maxIterations = Infinity, minInterval = 0 }: RunOptions<F> = {}): Promise<F> {
+  async run({ onFrame, maxIterations = Infinity, minInterval = 0 }: RunOptions<F, R> = {}): Promise<F> {
     if (this.#run !== undefined) throw new FoldfreeError('busy', 'this solver is running already');
     this.#mustLive();
     const run = this.#client.newId();
@@ -81,8 +79,8 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
     this.#signal?.addEventListener('abort', stop, { once: true });
     try {
       const args = { solver: this.#id, run, maxIterations, minInterval };
-      const listener = onFrame as FrameListener<Frame> | undefined;
-      const last = (await this.#wait(this.#client.run(args, this.#generation, listener))) as F;
+      const listener = onFrame as AnyListener | undefined;
+      const last = (await this.#wait(this.#client.run(args, this.#generation, listener))) as unknown as F;
       this.#status = last.status === 'cancelled' ? 'running' : last.status;
       return last;
     } finally {
@@ -95,11 +93,6 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
   async *[Symbol.asyncIterator](): AsyncGenerator<F, void, undefined> {
     this.#cancelled = false;
     while (this.#status === 'running' && !this.#cancelled) yield await this.step();
-  }
-
-  /** Weight over rest weight an element; empty where the method has no weights. */
-  weights(): Promise<Float32Array> {
-    return this.call('weights');
   }
 
   /** Ends a run or an iteration after the current step. The solver stays usable. */
@@ -134,14 +127,33 @@ abstract class Stepper<F extends Frame> implements AsyncIterable<F> {
     return this.#wait(this.#client.callIn(this.#generation, call, { ...args, solver: this.#id } as Calls[K][0]));
   }
 
-  /** The status is `running` again. */
-  protected awake(): void {
-    this.#status = 'running';
+  /** The status is this, `running` as a rule, again. */
+  protected awake(status: Progress['status'] = 'running'): void {
+    this.#status = status;
+  }
+}
+
+/** An iterative computation on a mesh. */
+abstract class MeshStepper<F extends Frame> extends Stepper<F> {
+  readonly notes: string[];
+
+  /** @internal */
+  constructor(
+    client: Client, generation: number, id: number,
+    info: { start: F; notes: string[]; setupSeconds: number }, wait: Wait, signal: AbortSignal | undefined,
+  ) {
+    super(client, generation, id, info, wait, signal);
+    this.notes = info.notes;
+  }
+
+  /** Weight over rest weight an element; empty where the method has no weights. */
+  weights(): Promise<Float32Array> {
+    return this.call('weights');
   }
 }
 
 /** A map being computed in the worker. */
-export class Solver extends Stepper<Step> implements SolverInfo {
+export class Solver extends MeshStepper<Step> implements SolverInfo {
   readonly mesh: MeshArrays;
   readonly inputVertices: Uint32Array;
   readonly seamEdges: number;
@@ -168,7 +180,7 @@ export class Solver extends Stepper<Step> implements SolverInfo {
 }
 
 /** A solid, or (with `Certificate`) triangles in their plane, being deformed in the worker. */
-export class Deformation<C extends SolidCertificate | Certificate = SolidCertificate> extends Stepper<DeformStep> implements DeformInfo {
+export class Deformation<C extends SolidCertificate | Certificate = SolidCertificate> extends MeshStepper<DeformStep> implements DeformInfo {
   /**
    * Replaces all targets, also while a run goes on, between two of its steps: pinned vertices are moved to
    * theirs, free ones pulled. The iterate is kept and the status goes back to `running`; a run that has ended

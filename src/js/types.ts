@@ -13,6 +13,16 @@ export type {
   PhaseKind,
 } from './single/foldfree.js';
 
+export type * from './mixed-integer-types.js';
+
+/** What all methods say of a step. */
+export interface Progress {
+  /** 0 is the start, before any step. */
+  iteration: number;
+  /** Where the solver stands after the step. */
+  status: StepReport['status'];
+}
+
 /** Options of `parameterize`; what is left out has the paper's value. */
 export interface ParameterizeOptions extends ParameterizationOptions {
   /** Places for some vertices, each at most once. */

@@ -1,9 +1,10 @@
 // The worker: holds the wasm instance, answers the client's calls, and sends frames of runs.
 import { Core, CoreMesh, CoreSolver, type WasmBindings } from './engine.js';
 import { FoldfreeError, toPlain } from './error.js';
-import type { CallName, Calls, FromWorker, ToWorker } from './protocol.js';
+import { CoreMixedInteger } from './mixed-integer-engine.js';
+import type { AnyFrame, AnyReport, CallName, Calls, FromWorker, ToWorker } from './protocol.js';
 import { CoreDeformation, type CoreSolid } from './solid-engine.js';
-import type { Certificate, DeformInfo, DeformOptions, Frame, LimDeformOptions, MeshInfo, SolidInfo, SolverInfo, StepReport } from './types.js';
+import type { Certificate, DeformInfo, MeshInfo, MixedIntegerInfo, SolidInfo, SolverInfo } from './types.js';
 
 interface Port {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
@@ -79,13 +80,13 @@ function transferables(value: unknown): Transferable[] {
 
 /** Calls whose answers stay here, too. */
 const KEPT: readonly CallName[] = [
-  'read', 'generate', 'parameterize', 'readSolid', 'uploadSolid', 'generateSolid', 'deform',
+  'read', 'generate', 'parameterize', 'readSolid', 'uploadSolid', 'generateSolid', 'deform', 'mixedInteger',
 ];
 
 function serve(port: Port): void {
   let core: Core | undefined;
   const meshes = new Map<number, CoreMesh | CoreSolid>();
-  const solvers = new Map<number, CoreSolver | CoreDeformation | CoreDeformation<Certificate>>();
+  const solvers = new Map<number, CoreSolver | CoreDeformation | CoreDeformation<Certificate> | CoreMixedInteger>();
   const runs = new Map<number, Run>();
 
   const theCore = (): Core => {
@@ -116,6 +117,11 @@ function serve(port: Port): void {
     const solver = found(solvers, id, 'solver');
     if (solver instanceof CoreDeformation) return solver;
     throw new FoldfreeError('internal', 'this is no deformation');
+  };
+  const mixedInteger = (id: number): CoreMixedInteger => {
+    const solver = found(solvers, id, 'solver');
+    if (solver instanceof CoreMixedInteger) return solver;
+    throw new FoldfreeError('internal', 'this is no mixed-integer problem');
   };
   const keepSolid = (id: number, made: CoreSolid): SolidInfo => {
     meshes.set(id, made);
@@ -180,14 +186,26 @@ function serve(port: Port): void {
     setField: ({ solver, field }) => void deformation(solver).setField(field),
     checkSolid: ({ mesh, positions }) => theCore().checkSolid(solid(mesh), positions),
     deformed: ({ solver }) => deformation(solver).result(),
+    mixedInteger({ solver, input, options }): MixedIntegerInfo {
+      const made = theCore().mixedInteger('bytes' in input ? input.bytes : input.problem, options);
+      solvers.set(solver, made);
+      const { start, integerUnknowns, setupSeconds } = made;
+      return { start, integerUnknowns, setupSeconds };
+    },
+    resolve: ({ solver, change }) => mixedInteger(solver).resolve(change),
+    solved: ({ solver }) => mixedInteger(solver).result(),
+    mixedIntegerReport: ({ solver }) => mixedInteger(solver).report(),
     step: ({ solver }) => found(solvers, solver, 'solver').step(),
     async run({ solver: id, run: runId, maxIterations, minInterval }) {
       const solver = found(solvers, id, 'solver');
       const run: Run = { acknowledged: true, cancelled: false };
       runs.set(runId, run);
       try {
-        let reports: StepReport[] = [];
+        let reports: AnyReport[] = [];
         let sent = -Infinity;
+        // a rounding may take microseconds, less than it takes to listen
+        const listens = solver instanceof CoreMixedInteger ? 4 : 0;
+        let listened = performance.now();
         for (let count = 0; count < maxIterations; count++) {
           const report = solver.advance();
           reports.push(report);
@@ -199,11 +217,13 @@ function serve(port: Port): void {
             reports = [];
           }
           if (report.status !== 'running') break;
+          if (performance.now() - listened < listens) continue;
           await breathe();
+          listened = performance.now();
           if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
           if (run.cancelled) break;
         }
-        const last: Frame = solver.frame();
+        const last: AnyFrame = solver.frame();
         if (reports.length) {
           if (!run.acknowledged) await new Promise<void>((resolve) => (run.taken = resolve));
           port.postMessage({ run: runId, frame: last, reports });
@@ -213,7 +233,10 @@ function serve(port: Port): void {
         runs.delete(runId);
       }
     },
-    weights: ({ solver }) => found(solvers, solver, 'solver').weights(),
+    weights({ solver: id }) {
+      const solver = found(solvers, id, 'solver');
+      return solver instanceof CoreMixedInteger ? new Float32Array() : solver.weights();
+    },
     result: ({ solver }) => map(solver).result(),
     exportObj: ({ solver }) => map(solver).exportObj(),
     freeSolver: ({ solver }) => {

@@ -22,6 +22,13 @@ pub enum MixedIntegerError {
         index: u64,
         unknowns: usize,
     },
+    /// A coefficient of a constraint row that does not exist.
+    #[error("coefficient {position} names constraint row {row}, but there are {rows} rows")]
+    RowOutOfRange {
+        position: usize,
+        row: u32,
+        rows: usize,
+    },
     /// NaN or an infinity.
     #[error("{item} {position} is not finite")]
     NonFinite { item: &'static str, position: usize },
@@ -85,7 +92,7 @@ impl MixedIntegerError {
     pub fn code(&self) -> &'static str {
         match self {
             Self::Parse { .. } => "parse",
-            Self::IndexOutOfRange { .. } => "index-out-of-range",
+            Self::IndexOutOfRange { .. } | Self::RowOutOfRange { .. } => "index-out-of-range",
             Self::NonFinite { .. } => "non-finite",
             Self::NotSymmetric { .. } => "not-symmetric",
             Self::WrongLength { .. } => "wrong-length",

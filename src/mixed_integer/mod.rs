@@ -24,6 +24,7 @@
 //! then rounds. Few integers are found on the dense Schur complement of all other unknowns, which is the
 //! exact energy of the integers; many by the paper's three levels.
 
+mod builder;
 mod dense;
 mod elimination;
 mod error;
@@ -38,9 +39,10 @@ mod search;
 mod solver;
 mod sys;
 
+pub use builder::ProblemBuilder;
 pub use elimination::RowOutcome;
 pub use error::MixedIntegerError;
 pub use options::{Engine, MixedIntegerOptions, Rounding};
-pub use problem::{Problem, ProblemBuilder};
+pub use problem::Problem;
 pub use report::{Action, Level, LevelCounts, MixedIntegerReport, MixedIntegerStep, Rounded};
 pub use solver::MixedInteger;

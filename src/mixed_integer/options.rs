@@ -4,6 +4,7 @@ use super::MixedIntegerError as Error;
 
 /// How integers are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Rounding {
     /// All at once from the relaxed solution (paper, §3.1).
@@ -24,6 +25,7 @@ impl Rounding {
 
 /// What the integers are found with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Engine {
     /// `Dense` up to a few hundred integers, and where the rounding needs it; else `ThreeLevel`.
@@ -38,6 +40,7 @@ pub enum Engine {
 
 /// Options of [`super::MixedInteger`].
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase", default)]
 pub struct MixedIntegerOptions {
     /// How integers are found.

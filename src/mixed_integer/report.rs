@@ -6,6 +6,7 @@ use crate::optim::Status;
 /// An integer that got a value. What the unknown stands for may be a combination of integers, where a
 /// constraint row without a coefficient ±1 made new ones.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct Rounded {
     /// Its number in the problem.
@@ -18,6 +19,7 @@ pub struct Rounded {
 
 /// What made the other unknowns follow a rounded integer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case")]
 pub enum Level {
     /// Local Gauss–Seidel.
@@ -34,6 +36,7 @@ pub enum Level {
 
 /// What a step did.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum Action {
     /// The minimum without integrality: the start.
@@ -91,6 +94,7 @@ pub struct MixedIntegerStep {
 
 /// How often each level finished, and its work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct LevelCounts {
     /// Roundings after which local Gauss–Seidel sufficed.
@@ -111,6 +115,7 @@ pub struct LevelCounts {
 
 /// Where the solver stands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct MixedIntegerReport {
     /// Energy of the solution (of the relaxed one as long as integers are missing).

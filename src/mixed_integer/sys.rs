@@ -108,20 +108,21 @@ impl Problem {
             .map(|_| words.number("an entry of b"))
             .collect();
         builder = builder.linear(&linear?);
-        let mut constraints = vec![(Vec::new(), 0.0); rows];
+        let mut constants = vec![0.0; rows];
+        let mut places: (Vec<u32>, Vec<u32>, Vec<f64>) = Default::default();
         for _ in 0..coefficients {
             let row = words.index("the row of a coefficient", rows)?;
             let column = words.index("the column of a coefficient", unknowns + 1)?;
             let value = words.number("a coefficient")?;
-            let (terms, constant) = &mut constraints[row as usize];
-            match column as usize == unknowns {
-                true => *constant += value,
-                false => terms.push((column, value)),
+            if column as usize == unknowns {
+                constants[row as usize] += value;
+            } else {
+                places.0.push(row);
+                places.1.push(column);
+                places.2.push(value);
             }
         }
-        for (terms, constant) in &constraints {
-            builder.push_constraint(terms, *constant);
-        }
+        builder = builder.constraints(&places.0, &places.1, &places.2, &constants);
         let mut seen = vec![false; unknowns];
         for _ in 0..integers {
             let integer = words.index("an integer unknown", unknowns)?;

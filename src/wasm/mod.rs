@@ -9,6 +9,7 @@
 mod deformation;
 mod error;
 mod mesh;
+mod mixed_integer;
 mod options;
 mod parameterization;
 mod report;
@@ -16,7 +17,11 @@ mod solid;
 
 pub use deformation::WasmDeformation;
 pub use mesh::{WasmMesh, shapes};
-pub use options::{default_deformation_options, default_lim_options, default_options};
+pub use mixed_integer::{WasmMixedInteger, WasmProblem};
+pub use options::{
+    default_deformation_options, default_lim_options, default_mixed_integer_options,
+    default_options,
+};
 pub use parameterization::{WasmParameterization, check_corners, check_map};
 pub use solid::{WasmSolid, check_solid, solid_shapes};
 #[cfg(feature = "threads")]

@@ -3,6 +3,7 @@
 use super::error::{Fallible, invalid_option};
 use crate::deformation::{DeformationMethod, DeformationOptions, Material};
 use crate::lim::LimOptions;
+use crate::mixed_integer::MixedIntegerOptions;
 use crate::parameterization::ParameterizationOptions;
 use js_sys::{Object, Reflect};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -83,6 +84,11 @@ pub(super) fn deformation_options(value: &JsValue) -> Fallible<DeformationOption
     })
 }
 
+/// `undefined` and `null` stand for the defaults.
+pub(super) fn mixed_integer_options(value: &JsValue) -> Fallible<MixedIntegerOptions> {
+    options(value)
+}
+
 fn options<T: Default + Serialize + DeserializeOwned>(value: &JsValue) -> Fallible<T> {
     if value.is_undefined() || value.is_null() {
         return Ok(T::default());
@@ -144,6 +150,12 @@ pub fn default_deformation_options() -> Fallible<JsValue> {
 #[wasm_bindgen(js_name = defaultLimOptions, unchecked_return_type = "LimOptions")]
 pub fn default_lim_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&LimOptions::default()).map_err(JsValue::from)
+}
+
+/// The default options of a mixed-integer problem.
+#[wasm_bindgen(js_name = defaultMixedIntegerOptions, unchecked_return_type = "MixedIntegerOptions")]
+pub fn default_mixed_integer_options() -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(&MixedIntegerOptions::default()).map_err(JsValue::from)
 }
 
 #[wasm_bindgen(typescript_custom_section)]

@@ -2,9 +2,10 @@
 import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
 import { isFigure } from './figures.js';
 import { LIM_ENERGIES, MATERIALS } from './materials.js';
+import { WINDOW } from './round-problems.js';
 
 /** The modes, the first of which the page opens on. */
-export const MODES = ['flatten', 'deform', 'compare'];
+export const MODES = ['flatten', 'deform', 'compare', 'round'];
 
 /** What each mode opens on. */
 export const DEFAULTS = Object.freeze({
@@ -18,6 +19,9 @@ export const DEFAULTS = Object.freeze({
   compare: Object.freeze({
     sample: 'bumpy-cap', triangles: 4000, start: 'tutte', energy: 'symmetric-dirichlet', clock: 'iterations',
     methods: 'wrapd,wrapd+cm,cm,slim',
+  }),
+  round: Object.freeze({
+    problem: 'lattice', rounding: 'greedy', updates: 'exact', condition: 8, turn: 30, x: 0.4, y: 0.55, points: 16, coupling: 10, seed: 3,
   }),
 });
 
@@ -42,10 +46,19 @@ const CHOICES = {
     energy: ['symmetric-dirichlet', 'arap'],
     clock: ['iterations', 'seconds'],
   },
+  round: {
+    problem: ['lattice', 'chain'],
+    rounding: ['direct', 'greedy', 'two-opt', 'lattice'],
+    updates: ['exact', 'three-level'],
+  },
 };
 
-const NAMES = { flatten: ['sample'], deform: ['solid'], compare: ['sample'] };
+const NAMES = { flatten: ['sample'], deform: ['solid'], compare: ['sample'], round: [] };
 const RANGES = {
+  round: {
+    condition: [1, 100, false], turn: [-90, 90, true], x: [WINDOW.left + WINDOW.margin, WINDOW.right - WINDOW.margin, false],
+    y: [WINDOW.low + WINDOW.margin, WINDOW.high - WINDOW.margin, false], points: [2, 64, true], coupling: [0, 40, true], seed: [1, 999, true],
+  },
   flatten: { triangles: [2, 1e6, true] },
   compare: { triangles: [2, 1e6, true] },
   deform: { tetrahedra: [2, 1e6, true], young: [1e-6, 1e15, false], poisson: [-0.99, 0.499, false], at: [0, 1, false] },
@@ -106,7 +119,7 @@ export function readAddress(mode = modeOf(), search = location.search) {
 export const MOST_STEPS = 5000;
 
 /** How the address says how many steps to make. */
-const STEPS = { flatten: 'at', deform: 'steps', compare: 'at' };
+const STEPS = { flatten: 'at', deform: 'steps', compare: 'at', round: 'steps' };
 
 /** Writes the state of `mode` into the address, defaults left out, and everything of other modes. */
 export function writeAddress(mode, state) {

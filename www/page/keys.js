@@ -12,9 +12,9 @@ export function listenToKeys(acts) {
     if (choosing) return;
     const name = (event.shiftKey && event.key.startsWith('Arrow') ? 'Shift+' : '')
       + (event.key.length === 1 ? event.key.toLowerCase() : event.key);
-    // Space and Enter belong to the button in focus; the arrows of a tab list to the list.
+    // Space and Enter belong to the button in focus; the arrows of a tab list to the list, those of a handle to it.
     if ((name === ' ' || name === 'Enter') && target instanceof HTMLButtonElement) return;
-    if (name.includes('Arrow') && target instanceof Element && target.closest('[role="tablist"]')) return;
+    if (name.includes('Arrow') && target instanceof Element && target.closest('[role="tablist"], [role="slider"]')) return;
     const act = acts[name];
     if (!act) return;
     event.preventDefault();

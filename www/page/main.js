@@ -9,6 +9,7 @@ import { Flatten } from './flatten.js';
 import { listenToKeys } from './keys.js';
 import { nextFrame } from './mode.js';
 import { clearNotice, describe, notice } from './notice.js';
+import { Round } from './round.js';
 import { drawStatus } from './status.js';
 import { connectViews, flip, flipTheme, follow, nameViews, project, projecting } from './views.js';
 
@@ -16,7 +17,7 @@ const $ = (id) => document.getElementById(id);
 
 /** What the modes share. */
 const page = { canvas: undefined, foldfree: undefined, active: undefined, busy: setBusy };
-const modes = { flatten: new Flatten(page), deform: new Deform(page) };
+const modes = { flatten: new Flatten(page), deform: new Deform(page), round: new Round(page) };
 modes.compare = new Compare(page, modes.flatten);
 page.active = modes[modeOf()];
 
@@ -132,7 +133,7 @@ function connect() {
     if (files.length) page.active.openFiles(files);
   });
   acceptDrops($('drop'), (files) => page.active.openFiles(files));
-  for (const id of ['export-obj', 'export-solid', 'export-csv', 'export-trace']) $(id).addEventListener('click', () => exporting(id));
+  for (const id of ['export-obj', 'export-solid', 'export-csv', 'export-trace', 'export-sys']) $(id).addEventListener('click', () => exporting(id));
   $('export-menu').addEventListener('beforetoggle', () => {
     const at = $('export').getBoundingClientRect();
     const style = $('export-menu').style;

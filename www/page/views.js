@@ -44,12 +44,14 @@ function arrange() {
   const { mode } = document.body.dataset;
   const deforming = mode === 'deform';
   const comparing = mode === 'compare';
+  const rounding = mode === 'round';
   const column = wide && !narrow.matches && !projecting() ? 292 : 0;
-  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${comparing ? 0.5 : deforming ? 0.25 : 0.75})`);
+  box.setProperty('--invite-x', narrow.matches ? '50%' : `calc((100% - ${column}px) * ${comparing || rounding ? 0.5 : deforming ? 0.25 : 0.75})`);
   // The plot below the views has at most 250 points (layout.rs).
   const low = narrow.matches ? 'calc(100% - 86px)' : 'calc(100% - clamp(130px, 30%, 250px) - 74px)';
   // Where solvers are compared: in the middle of the plot, which is empty yet.
   if (comparing) box.setProperty('--invite-y', 'calc(100% - clamp(150px, 46%, 340px) / 2)');
+  else if (rounding) box.setProperty('--invite-y', narrow.matches ? 'calc(50% - 74px)' : 'calc(100% - 74px)');
   else box.setProperty('--invite-y', deforming ? low : narrow.matches ? '50%' : '34%');
 }
 

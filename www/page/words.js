@@ -31,6 +31,9 @@ export const METHODS = {
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
 
+/** Names of the roundings of integers. */
+export const ROUNDING_NAMES = { direct: 'direct', greedy: 'greedy', 'two-opt': 'two-opt', lattice: 'lattice' };
+
 /** Methods that cannot begin at a start with inverted triangles, unless the energy allows it. */
 export const NEEDS_INJECTIVE = ['cm', 'slim'];
 

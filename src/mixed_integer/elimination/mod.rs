@@ -11,16 +11,19 @@ mod affine;
 mod constants;
 mod integer_row;
 mod order;
+mod pairs;
 mod rows;
 
 use super::{MixedIntegerError as Error, Problem};
 pub use affine::AffineMap;
 use constants::{ConstantStep, Constants};
 use order::Queue;
+use pairs::Pairs;
 use rows::Rows;
 
 /// What became of a constraint row.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "kebab-case", tag = "outcome", content = "unknown")]
 pub enum RowOutcome {
     /// It was solved for this unknown.
@@ -71,7 +74,20 @@ impl Elimination {
             scale: rows.scales(),
             changes_of_integers: 0,
         };
+        // as long as there is no longer row to eliminate
+        let mut pairs = reordered.then(|| Pairs::new(problem.unknowns()));
         while let Some(row) = queue.pop(&rows) {
+            if let Some(mut solved) = pairs.take_if(|_| !Pairs::takes(&rows, row)) {
+                for other in 0..problem.rows() as u32 {
+                    if rows.is_open(other) {
+                        solved.rewrite(&mut rows, other, &mut this, &mut constants)?;
+                        queue.changed(other, &rows);
+                    }
+                }
+                // it may not be the shortest any more
+                queue.put_back(row, &rows);
+                continue;
+            }
             rows.drop_noise(row, tolerance);
             if rows.terms(row).is_empty() {
                 let scale = this.scale[row as usize];
@@ -83,7 +99,13 @@ impl Elimination {
                 Some(pivot) => pivot,
                 None => this.integer_pivot(&mut rows, &mut queue, &mut constants, row)?,
             };
-            this.eliminate(&mut rows, &mut queue, &mut constants, row, pivot)?;
+            this.eliminate(
+                &mut rows,
+                &mut queue,
+                &mut constants,
+                (row, pivot),
+                pairs.as_mut(),
+            )?;
         }
         Ok(this)
     }
@@ -131,15 +153,17 @@ impl Elimination {
         }
     }
 
-    /// Solves a row for `pivot` and takes `pivot` out of the rows that are still open.
+    /// Solves a row for `pivot` and takes `pivot` out of the rows that are still open; with `pairs` out of those of
+    /// two unknowns alone.
     fn eliminate(
         &mut self,
         rows: &mut Rows,
         queue: &mut Queue,
         constants: &mut Constants,
-        row: u32,
-        pivot: u32,
+        (row, pivot): (u32, u32),
+        pairs: Option<&mut Pairs>,
     ) -> Result<(), Error> {
+        let longest = if pairs.is_some() { 2 } else { usize::MAX };
         let solved = rows.close(row);
         let at = |terms: &[(u32, f64)]| terms.binary_search_by_key(&pivot, |t| t.0);
         let Ok(place) = at(&solved) else {
@@ -147,21 +171,21 @@ impl Elimination {
         };
         let a = solved[place].1;
         for target in rows.open_rows_of(pivot) {
+            if rows.terms(target).len() > longest {
+                continue;
+            }
             let factor = rows.coefficient(target, pivot) / a;
             if factor == 0.0 {
                 continue;
             }
             rows.subtract(target, factor, &solved, pivot);
             queue.changed(target, rows);
-            let scale = self.scale[row as usize] * factor.abs();
-            self.scale[target as usize] = self.scale[target as usize].max(scale);
-            let step = ConstantStep::Subtract {
-                row: target,
-                source: row,
-                factor,
-            };
-            self.apply(constants, step)?;
+            self.subtract(constants, target, row, factor)?;
         }
+        if let Some(pairs) = pairs {
+            pairs.solved(row, pivot, &solved, self.substitutions.len());
+        }
+        rows.inherit(pivot, &solved);
         self.outcomes[row as usize] = RowOutcome::Eliminates(pivot);
         let others = solved.iter().filter(|t| t.0 != pivot);
         self.substitutions.push(Substitution {
@@ -170,6 +194,24 @@ impl Elimination {
             constant: Some((row, -1.0 / a)),
         });
         Ok(())
+    }
+
+    /// Row `target` −= factor · row `source`: its constant, and the size of what may have cancelled in it.
+    fn subtract(
+        &mut self,
+        constants: &mut Constants,
+        target: u32,
+        source: u32,
+        factor: f64,
+    ) -> Result<(), Error> {
+        let scale = self.scale[source as usize] * factor.abs();
+        self.scale[target as usize] = self.scale[target as usize].max(scale);
+        let step = ConstantStep::Subtract {
+            row: target,
+            source,
+            factor,
+        };
+        self.apply(constants, step)
     }
 
     fn apply(&mut self, constants: &mut Constants, step: ConstantStep) -> Result<(), Error> {

@@ -30,6 +30,15 @@ impl Queue {
         Some(row)
     }
 
+    /// A row that was taken out is to be eliminated later.
+    pub fn put_back(&mut self, row: u32, rows: &Rows) {
+        let key = &mut self.key[row as usize];
+        if self.reordered {
+            *key = rows.terms(row).len() as u32;
+        }
+        self.rows.insert((*key, row));
+    }
+
     /// A row that is still open has other terms now.
     pub fn changed(&mut self, row: u32, rows: &Rows) {
         let key = &mut self.key[row as usize];

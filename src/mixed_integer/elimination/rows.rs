@@ -7,6 +7,9 @@ use crate::mixed_integer::{MixedIntegerError as Error, Problem};
 /// A coefficient at least this large, relative to the row's largest, is stable enough to divide by.
 const STABLE: f64 = 0.5;
 
+/// What is left of two terms that cancel, relative to them, and counts as 0 unless they are whole numbers.
+pub(super) const CANCELLED: f64 = 1e-11;
+
 /// Sparse rows, and for each unknown the rows it may be in.
 pub(super) struct Rows {
     /// Ascending; emptied when a row is closed.
@@ -15,8 +18,11 @@ pub(super) struct Rows {
     /// Rows of each unknown, once each; rows that have lost it since are among them.
     rows_of: Vec<Vec<u32>>,
     is_integer: Vec<bool>,
-    /// Entries of A in each unknown's column.
-    degree: Vec<u32>,
+    /// Open rows that hold each unknown.
+    holders: Vec<u32>,
+    /// Entries of A in the columns of each unknown and of those that are expressed by it: what solving for it
+    /// would fill.
+    weight: Vec<u32>,
     /// For merging.
     merged: Vec<(u32, f64)>,
 }
@@ -28,10 +34,10 @@ impl Rows {
         for &i in problem.integers() {
             is_integer[i as usize] = true;
         }
-        let mut degree = vec![0; n];
+        let mut weight = vec![0; n];
         for (i, j, _) in problem.matrix().triplet_iter() {
-            degree[i] += 1;
-            degree[j] += 1;
+            weight[i] += 1;
+            weight[j] += 1;
         }
         let terms: Vec<Vec<(u32, f64)>> = (0..problem.rows())
             .map(|row| problem.row(row).to_vec())
@@ -44,10 +50,11 @@ impl Rows {
         }
         Self {
             open: vec![true; terms.len()],
+            holders: rows_of.iter().map(|list| list.len() as u32).collect(),
             terms,
             rows_of,
             is_integer,
-            degree,
+            weight,
             merged: Vec::new(),
         }
     }
@@ -57,6 +64,9 @@ impl Rows {
     }
     pub fn terms(&self, row: u32) -> &[(u32, f64)] {
         &self.terms[row as usize]
+    }
+    pub fn is_real(&self, unknown: u32) -> bool {
+        !self.is_integer[unknown as usize]
     }
     pub fn is_open(&self, row: u32) -> bool {
         self.open[row as usize]
@@ -79,7 +89,11 @@ impl Rows {
     pub fn drop_noise(&mut self, row: u32, tolerance: f64) {
         let terms = &mut self.terms[row as usize];
         let largest = terms.iter().map(|t| t.1.abs()).fold(0.0, f64::max);
-        terms.retain(|t| t.1.abs() > 1e-3 * tolerance * largest);
+        terms.retain(|t| {
+            let is_kept = t.1.abs() > 1e-3 * tolerance * largest;
+            self.holders[t.0 as usize] -= u32::from(!is_kept);
+            is_kept
+        });
     }
 
     pub fn set_coefficients(&mut self, row: u32, coefficients: &[f64]) {
@@ -88,10 +102,29 @@ impl Rows {
         }
     }
 
+    /// Other terms (ascending) for an open row.
+    pub fn replace(&mut self, row: u32, terms: Vec<(u32, f64)>) {
+        let old = std::mem::take(&mut self.terms[row as usize]);
+        for &(unknown, _) in &old {
+            self.holders[unknown as usize] -= 1;
+        }
+        for &(unknown, _) in &terms {
+            self.holders[unknown as usize] += 1;
+            if old.binary_search_by_key(&unknown, |t| t.0).is_err() {
+                self.rows_of[unknown as usize].push(row);
+            }
+        }
+        self.terms[row as usize] = terms;
+    }
+
     /// Takes a row out.
     pub fn close(&mut self, row: u32) -> Vec<(u32, f64)> {
         self.open[row as usize] = false;
-        std::mem::take(&mut self.terms[row as usize])
+        let terms = std::mem::take(&mut self.terms[row as usize]);
+        for &(unknown, _) in &terms {
+            self.holders[unknown as usize] -= 1;
+        }
+        terms
     }
 
     /// The open rows that may hold an unknown, ascending.
@@ -103,27 +136,34 @@ impl Rows {
         list
     }
 
-    /// The cheapest of the candidates: in fewest rows, then in fewest terms of the energy, then first.
-    fn cheapest(&self, candidates: impl Iterator<Item = u32>) -> Option<u32> {
-        candidates.min_by_key(|&i| {
-            let i = i as usize;
-            (self.rows_of[i].len(), self.degree[i], i)
-        })
+    /// `pivot` is expressed by the other unknowns of its row from now on, which inherit its weight.
+    pub fn inherit(&mut self, pivot: u32, solved: &[(u32, f64)]) {
+        let weight = self.weight[pivot as usize];
+        for &(unknown, _) in solved {
+            let own = &mut self.weight[unknown as usize];
+            *own = own.saturating_add(weight);
+        }
     }
 
-    /// A real unknown to solve the row for: one of the largest coefficients, and cheap.
+    /// A real unknown to solve the row for: one of the largest coefficients, in fewest open rows, then of the least
+    /// weight, then first.
     pub fn real_pivot(&self, row: u32) -> Option<u32> {
         let reals = self.terms(row).iter();
         let reals = reals.filter(|t| !self.is_integer[t.0 as usize]);
         let largest = reals.clone().map(|t| t.1.abs()).fold(0.0, f64::max);
         let stable = reals.filter(|t| t.1.abs() >= STABLE * largest);
-        self.cheapest(stable.map(|t| t.0))
+        let stable = stable.map(|t| t.0 as usize);
+        let cheapest = stable.min_by_key(|&i| (self.holders[i], self.weight[i], i));
+        cheapest.map(|i| i as u32)
     }
 
-    /// An integer with the coefficient ±1.
+    /// An integer with the coefficient ±1: of the least weight, then in fewest open rows, then first. What few integers
+    /// express many unknowns by is what fills the reduced matrix, more than anything in between.
     pub fn unit_pivot(&self, row: u32) -> Option<u32> {
         let units = self.terms(row).iter().filter(|t| t.1.abs() == 1.0);
-        self.cheapest(units.map(|t| t.0))
+        let units = units.map(|t| t.0 as usize);
+        let lightest = units.min_by_key(|&i| (self.weight[i], self.holders[i], i));
+        lightest.map(|i| i as u32)
     }
 
     /// Row `target` −= factor · `solved`, which takes `pivot` out of it.
@@ -157,7 +197,6 @@ impl Rows {
 
     /// Row `target` −= factor · `other`, both ascending; what cancels is dropped.
     fn merge(&mut self, target: u32, factor: f64, other: &[(u32, f64)], pivot: Option<u32>) {
-        const CANCELLED: f64 = 1e-11;
         let mut merged = std::mem::take(&mut self.merged);
         merged.clear();
         let own = &self.terms[target as usize];
@@ -172,7 +211,9 @@ impl Rows {
                     let (value, size) = (x - product, x.abs().max(product.abs()));
                     // integers are exact: only a real cancellation leaves rounding errors
                     let exact = x.fract() == 0.0 && product.fract() == 0.0 && size < EXACT;
-                    if value.abs() <= if exact { 0.0 } else { CANCELLED * size } {
+                    if value.abs() <= if exact { 0.0 } else { CANCELLED * size } || Some(i) == pivot
+                    {
+                        self.holders[i as usize] -= 1;
                         continue;
                     }
                     (i, value)
@@ -183,16 +224,13 @@ impl Rows {
                 }
                 (_, Some(&&(j, y))) => {
                     b.next();
-                    if Some(j) != pivot {
-                        self.rows_of[j as usize].push(target);
-                    }
+                    self.rows_of[j as usize].push(target);
+                    self.holders[j as usize] += 1;
                     (j, -factor * y)
                 }
                 (Some(_), None) => unreachable!("the arm before takes it"),
             };
-            if Some(i) != pivot {
-                merged.push((i, value));
-            }
+            merged.push((i, value));
         }
         self.merged = std::mem::replace(&mut self.terms[target as usize], merged);
     }
