@@ -4,7 +4,7 @@ import { FoldfreeError, toPlain } from './error.js';
 import { CoreMixedInteger } from './mixed-integer-engine.js';
 import type { AnyFrame, AnyReport, CallName, Calls, FromWorker, ToWorker } from './protocol.js';
 import { CoreDeformation, type CoreSolid } from './solid-engine.js';
-import type { Certificate, DeformInfo, MeshInfo, MixedIntegerInfo, SolidInfo, SolverInfo } from './types.js';
+import type { Certificate, DeformInfo, DeformOptions, LimDeformOptions, MeshInfo, MixedIntegerInfo, SolidInfo, SolverInfo } from './types.js';
 
 interface Port {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
