@@ -11,6 +11,8 @@ mod problem;
 mod set;
 mod simplex;
 mod solver;
+#[cfg(test)]
+mod tests;
 mod zones;
 
 pub use constraint::{Constraint, Key, Law};

@@ -4,6 +4,7 @@ use crate::certificate::{orientation, orientation_of_tetrahedron};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::RestShape;
 use crate::optim::{BuildError, Spring};
+use super::simplex::signed_measure;
 use crate::wrapd::External;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
@@ -76,6 +77,49 @@ impl GiniProblem<'_> {
         }
         components
     }
+}
+
+/// The signed measure of the image, if pins determine it: all vertices of the boundary are held. It is the sum over
+/// the elements, whatever the inside is like. With it the largest rounding error it may have.
+pub(super) fn held_measure<const D: usize>(
+    rest: &RestShape,
+    is_held: &[bool],
+    start: &[f64],
+) -> Option<(f64, f64)> {
+    let held = is_held.iter().filter(|&&held| held).count();
+    if held <= D {
+        return None;
+    }
+    // facets with a vertex that moves, as sorted vertices: all of them must have two elements
+    let mut facets: Vec<[u32; 3]> = Vec::new();
+    for e in 0..rest.len() {
+        let simplex = rest.simplex(e);
+        for opposite in 0..=D {
+            let mut facet = [u32::MAX; 3];
+            let others = (0..=D).filter(|&v| v != opposite);
+            for (place, v) in facet.iter_mut().zip(others) {
+                *place = simplex[v];
+            }
+            if facet[..D].iter().any(|&v| !is_held[v as usize]) {
+                facet.sort_unstable();
+                facets.push(facet);
+            }
+        }
+    }
+    facets.sort_unstable();
+    if facets.chunk_by(|a, b| a == b).any(|same| same.len() != 2) {
+        return None;
+    }
+    let points = start.as_chunks::<D>().0;
+    let (mut sum, mut size) = (0.0, 0.0);
+    for e in 0..rest.len() {
+        let simplex = rest.simplex(e);
+        let at = |i: usize| points[simplex[i.min(D)] as usize];
+        let measure = signed_measure(&[at(0), at(1), at(2), at(3)]);
+        sum += measure;
+        size += measure.abs();
+    }
+    Some((sum, 1e-12 * size))
 }
 
 /// The elements that are not strictly positive, in ascending order: exact, whatever the solver thinks of its

@@ -32,6 +32,36 @@ pub struct Outcome {
     pub smallest_measure: f64,
 }
 
+impl Outcome {
+    /// Why no map of these pins can be injective, and which elements are not positive, in plain sentences.
+    pub fn obstacles(&self) -> Vec<String> {
+        let listed = |list: &[u32]| {
+            let first: Vec<String> = list.iter().take(10).map(u32::to_string).collect();
+            let more = if list.len() > 10 { ", …" } else { "" };
+            format!("{}{more}", first.join(", "))
+        };
+        let mut words = Vec::new();
+        if !self.hopeless.is_empty() {
+            words.push(format!(
+                "All vertices of these inverted elements are pinned, so that no map is injective: {}.",
+                listed(&self.hopeless)
+            ));
+        }
+        if let Some(measure) = self.hopeless_measure {
+            words.push(format!(
+                "The pinned boundary encloses a signed measure of {measure:.3e}, so that no map is injective."
+            ));
+        }
+        if !self.not_positive.is_empty() {
+            words.push(format!(
+                "Inverted or degenerate elements: {}.",
+                listed(&self.not_positive)
+            ));
+        }
+        words
+    }
+}
+
 /// The state with the fewest inverted elements that has been met.
 struct Best<const D: usize> {
     inverted: usize,
@@ -70,6 +100,8 @@ pub struct Gini<const D: usize> {
     positions: Vec<f64>,
     hopeless: Vec<u32>,
     hopeless_measure: Option<f64>,
+    /// η relative to the rest measure, where it has not been reduced.
+    first_offset: f64,
     report: StepReport,
 }
 
@@ -78,7 +110,7 @@ impl<const D: usize> Gini<D> {
         let begun = Stopwatch::start();
         let iteration = self.report.iteration + 1;
         let mut step = GiniStep {
-            first_offset: self.options.offset,
+            first_offset: self.first_offset,
             ..Default::default()
         };
 
@@ -117,7 +149,7 @@ impl<const D: usize> Gini<D> {
         step.smallest_measure = self.smallest(&self.values);
         let offsets = &self.elements.relative_offset;
         step.least_offset = offsets.iter().copied().fold(f64::INFINITY, f64::min);
-        let first = self.options.offset;
+        let first = self.first_offset;
         step.reduced_offsets = offsets.iter().filter(|&&o| o < first).count();
         self.report.gini = Some(step);
         self.report

@@ -5,7 +5,7 @@ use crate::energy::Energy;
 use crate::geometry::Elimination;
 use crate::gini::admm::{Admm, Body};
 use crate::gini::elements::Elements;
-use crate::gini::problem::not_positive;
+use crate::gini::problem::{held_measure, not_positive};
 use crate::gini::set::ConstraintSet;
 use crate::gini::zones::Zones;
 use crate::gini::{GiniOptions, GiniProblem};
@@ -75,7 +75,12 @@ impl<const D: usize> Gini<D> {
             movable[slot[v] as usize] = !is_held[v];
         }
         let held: Vec<bool> = movable.iter().map(|m| !m).collect();
-        let elements = Elements::new(&rest, &slot, &held, options.offset);
+        let image = held_measure::<D>(problem.rest, &is_held, problem.start);
+        let at_rest: f64 = rest.measure.iter().sum();
+        // where pins leave less room than there is at rest, every η is less from the beginning
+        let room = image.map_or(1.0, |(image, _)| (image / at_rest).clamp(1e-6, 1.0));
+        let first_offset = room * options.offset;
+        let elements = Elements::new(&rest, &slot, &held, first_offset);
         let admm = Admm::new(body, &rest, order.clone(), &elimination, problem.start, &external)?;
         let mut values = vec![0.0; elements.len()];
         elements.values(&x, &mut values);
@@ -105,7 +110,8 @@ impl<const D: usize> Gini<D> {
             },
             positions: problem.start.to_vec(),
             hopeless: Vec::new(),
-            hopeless_measure: None,
+            hopeless_measure: image.filter(|(image, error)| image <= error).map(|i| i.0),
+            first_offset,
             report: StepReport::at_start(),
             elements,
             slot,
@@ -130,7 +136,7 @@ impl<const D: usize> Gini<D> {
         self.hopeless = hopeless.copied().collect();
         self.report.status = match () {
             _ if inverted.is_empty() => Status::Converged(Criterion::Injective),
-            _ if !self.hopeless.is_empty() => Status::Stalled,
+            _ if !self.hopeless.is_empty() || self.hopeless_measure.is_some() => Status::Stalled,
             _ if self.options.max_iterations == 0 => Status::MaxIterations,
             () => Status::Running,
         };
