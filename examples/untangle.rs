@@ -49,9 +49,20 @@ fn main() -> Result<(), foldfree::Error> {
         for bend in Bend::ALL {
             for inside in Inside::ALL {
                 let t = solid(shape, count, bend, inside);
-                let u = Untangling::of_solid(&t.rest, &t.start, &t.pins, &[], Material::Arap, &options)?;
+                let u = Untangling::of_solid(
+                    &t.rest,
+                    &t.start,
+                    &t.pins,
+                    &[],
+                    Material::Arap,
+                    &options,
+                )?;
                 all += 1;
-                solved += usize::from(report(&format!("{} {bend:?} {inside:?}", shape.name()), &t, u));
+                solved += usize::from(report(
+                    &format!("{} {bend:?} {inside:?}", shape.name()),
+                    &t,
+                    u,
+                ));
             }
         }
     }
@@ -61,7 +72,14 @@ fn main() -> Result<(), foldfree::Error> {
         for bend in Bend::ALL {
             for inside in Inside::ALL {
                 let t = sheet(n, bend, inside);
-                let u = Untangling::of_plane(&t.rest, &t.start, &t.pins, &[], Material::Arap, &options)?;
+                let u = Untangling::of_plane(
+                    &t.rest,
+                    &t.start,
+                    &t.pins,
+                    &[],
+                    Material::Arap,
+                    &options,
+                )?;
                 all += 1;
                 solved += usize::from(report(&format!("sheet {n} {bend:?} {inside:?}"), &t, u));
             }

@@ -35,7 +35,8 @@ impl Dense {
 
     fn times(&self, x: &[f64]) -> Vec<f64> {
         let rows = self.h.chunks_exact(self.n);
-        rows.map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum()).collect()
+        rows.map(|row| row.iter().zip(x).map(|(a, b)| a * b).sum())
+            .collect()
     }
 
     fn value(&self, g: &[f64], x: &[f64]) -> f64 {
@@ -87,9 +88,13 @@ fn brute_force(q: &Dense, g: &[f64]) -> Vec<f64> {
     let mut best = (0.0, vec![0.0; n]);
     for set in 0u32..1 << n {
         let free: Vec<usize> = (0..n).filter(|i| set >> i & 1 == 1).collect();
-        let a = free.iter().map(|&i| free.iter().map(|&j| q.h[i * n + j]).collect());
+        let a = free
+            .iter()
+            .map(|&i| free.iter().map(|&j| q.h[i * n + j]).collect());
         let b = free.iter().map(|&i| -g[i]).collect();
-        let Some(x) = solve(a.collect(), b) else { continue };
+        let Some(x) = solve(a.collect(), b) else {
+            continue;
+        };
         if x.iter().any(|&x| x < 0.0) {
             continue;
         }
@@ -128,7 +133,10 @@ fn small_problems_end_where_brute_force_does() {
             let mut gradient: Vec<f64> = g.iter().zip(hx).map(|(g, h)| g + h).collect();
             minimize(&mut q, &mut lambda, &mut gradient, OPTIONS);
             for i in 0..n {
-                assert!((lambda[i] - expected[i]).abs() < 1e-7, "case {case}: {lambda:?} {expected:?}");
+                assert!(
+                    (lambda[i] - expected[i]).abs() < 1e-7,
+                    "case {case}: {lambda:?} {expected:?}"
+                );
                 assert!(lambda[i] >= 0.0);
                 assert!((q.followed[i] - lambda[i]).abs() < 1e-12, "steps are told");
             }
@@ -143,7 +151,11 @@ fn large_and_singular_problems_meet_the_conditions() {
         let mut q = Dense::random(n, rank, 0.0, &mut random);
         // g in the range of H plus what is positive: bounded below
         let x: Vec<f64> = (0..n).map(|_| random.next()).collect();
-        let g: Vec<f64> = q.times(&x).iter().map(|h| h + 0.1 * random.next().abs()).collect();
+        let g: Vec<f64> = q
+            .times(&x)
+            .iter()
+            .map(|h| h + 0.1 * random.next().abs())
+            .collect();
         let (mut lambda, mut gradient) = (vec![0.0; n], g.clone());
         let first = projected_norm(&lambda, &gradient);
         let options = LbfgsbOptions {
@@ -152,12 +164,26 @@ fn large_and_singular_problems_meet_the_conditions() {
             ..OPTIONS
         };
         let iterations = minimize(&mut q, &mut lambda, &mut gradient, options);
-        assert!(projected_norm(&lambda, &gradient) <= 1e-6 * first, "{n} {rank}: {iterations}");
-        let again: Vec<f64> = q.times(&lambda).iter().zip(&g).map(|(h, g)| h + g).collect();
+        assert!(
+            projected_norm(&lambda, &gradient) <= 1e-6 * first,
+            "{n} {rank}: {iterations}"
+        );
+        let again: Vec<f64> = q
+            .times(&lambda)
+            .iter()
+            .zip(&g)
+            .map(|(h, g)| h + g)
+            .collect();
         for (a, b) in again.iter().zip(&gradient) {
-            assert!((a - b).abs() < 1e-8 * first, "the gradient is that of the result");
+            assert!(
+                (a - b).abs() < 1e-8 * first,
+                "the gradient is that of the result"
+            );
         }
-        assert!(q.applied <= iterations + 1, "one product an iteration, one for the scale");
+        assert!(
+            q.applied <= iterations + 1,
+            "one product an iteration, one for the scale"
+        );
     }
 }
 

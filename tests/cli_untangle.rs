@@ -35,11 +35,15 @@ const UNTANGLE: &str = "untangle --rest grid.obj --init start.obj --pins pins.tx
 #[test]
 fn a_shuffled_grid_is_untangled() {
     let folder = folder("untangle-grid");
-    folder.foldfree("check start.obj --rest grid.obj -q").ends(2);
+    folder
+        .foldfree("check start.obj --rest grid.obj -q")
+        .ends(2);
     folder
         .foldfree(&format!("{UNTANGLE} --out out.obj --report r.json"))
         .ends(0);
-    folder.foldfree("check out.obj --rest grid.obj --global -q").ends(0);
+    folder
+        .foldfree("check out.obj --rest grid.obj --global -q")
+        .ends(0);
     let report: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     assert_eq!(report["status"], "converged");
     assert_eq!(report["criterion"], "injective");
@@ -47,7 +51,10 @@ fn a_shuffled_grid_is_untangled() {
     assert_eq!(report["elements"], 288);
     assert_eq!(report["pins"], 48);
     assert_eq!(report["options"]["max_polish_iterations"], 30);
-    assert_eq!(report["outcome"]["not_positive"].as_array().unwrap().len(), 0);
+    assert_eq!(
+        report["outcome"]["not_positive"].as_array().unwrap().len(),
+        0
+    );
     assert!(report["outcome"]["smallest_measure"].as_f64().unwrap() > 0.0);
     assert_eq!(report["certificate"]["globally_injective"], true);
     let steps = report["iterations"].as_array().unwrap();
@@ -71,7 +78,9 @@ fn a_shuffled_grid_is_untangled() {
     folder.foldfree("check soft.obj --rest grid.obj -q").ends(0);
     // held where the target says
     folder
-        .foldfree(&format!("{UNTANGLE} --targets targets.txt --hard --out hard.obj -q"))
+        .foldfree(&format!(
+            "{UNTANGLE} --targets targets.txt --hard --out hard.obj -q"
+        ))
         .ends(0);
     let hard = read(&folder.read("hard.obj"), Format::Obj).unwrap().mesh;
     assert_eq!(hard.positions[84].to_array(), [0.4, 0.4, 0.0]);
@@ -97,8 +106,15 @@ fn a_solid_is_untangled_with_every_energy() {
     }
     let start = foldfree::mesh::io::write_solid(&solid, Format::Medit).unwrap();
     folder.write("start.mesh", start);
-    folder.foldfree("check start.mesh --rest box.mesh -q").ends(2);
-    for energy in ["arap", "neo-hookean", "stable-neo-hookean", "symmetric-dirichlet"] {
+    folder
+        .foldfree("check start.mesh --rest box.mesh -q")
+        .ends(2);
+    for energy in [
+        "arap",
+        "neo-hookean",
+        "stable-neo-hookean",
+        "symmetric-dirichlet",
+    ] {
         folder
             .foldfree(&format!(
                 "untangle --rest box.mesh --init start.mesh --energy {energy} --out out.mesh -q"
@@ -133,7 +149,9 @@ fn what_cannot_be_untangled_is_said() {
 #[test]
 fn bad_input_is_refused_in_one_line() {
     let folder = folder("untangle-bad");
-    folder.foldfree("untangle --rest grid.obj").fails(&["--init"]);
+    folder
+        .foldfree("untangle --rest grid.obj")
+        .fails(&["--init"]);
     folder
         .foldfree("untangle --rest grid.obj --init nowhere.obj")
         .fails(&["nowhere.obj"]);

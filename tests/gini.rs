@@ -44,7 +44,12 @@ fn solids_are_untangled_from_every_start() {
             let t = solid(shape, 1500, bend, inside);
             let mut u = of_solid(&t, Material::Arap);
             let status = run(&mut u);
-            assert_eq!(status, INJECTIVE, "{shape:?} {bend:?} {inside:?} {:?}", u.outcome());
+            assert_eq!(
+                status,
+                INJECTIVE,
+                "{shape:?} {bend:?} {inside:?} {:?}",
+                u.outcome()
+            );
             let certificate = SolidCertificate::of_solid(&t.rest, &u.positions());
             assert!(certificate.is_free_of_folds());
             for &pin in &t.pins {
@@ -60,7 +65,12 @@ fn sheets_are_untangled_from_every_start() {
         for inside in Inside::ALL {
             let t = sheet(16, bend, inside);
             let mut u = of_plane(&t);
-            assert_eq!(run(&mut u), INJECTIVE, "{bend:?} {inside:?} {:?}", u.outcome());
+            assert_eq!(
+                run(&mut u),
+                INJECTIVE,
+                "{bend:?} {inside:?} {:?}",
+                u.outcome()
+            );
             assert!(u.outcome().not_positive.is_empty());
             assert!(u.outcome().smallest_measure > 0.0);
         }
@@ -101,7 +111,10 @@ fn every_energy_untangles_a_free_body_which_stays_where_it_is() {
 #[test]
 fn two_threads_give_the_same_bits() {
     let positions = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .expect("threads");
         pool.install(|| {
             let t = solid(SolidShape::Bar, 3000, Bend::Twisted, Inside::Random);
             let mut u = of_solid(&t, Material::Arap);
@@ -120,11 +133,19 @@ fn transformed(t: &Tangle<4>, scale: f64, order: &[usize]) -> Tangle<4> {
     let turn = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 1.0);
     let place = |p: &DVec3| scale * (turn * *p) + scale * DVec3::new(3.0, -2.0, 1.0);
     let mut new = vec![0u32; order.len()];
-    order.iter().enumerate().for_each(|(k, &old)| new[old] = k as u32);
+    order
+        .iter()
+        .enumerate()
+        .for_each(|(k, &old)| new[old] = k as u32);
     Tangle {
         rest: SolidMesh {
             positions: order.iter().map(|&v| place(&t.rest.positions[v])).collect(),
-            simplices: t.rest.simplices.iter().map(|s| s.map(|v| new[v as usize])).collect(),
+            simplices: t
+                .rest
+                .simplices
+                .iter()
+                .map(|s| s.map(|v| new[v as usize]))
+                .collect(),
         },
         start: order.iter().map(|&v| place(&t.start[v])).collect(),
         pins: t.pins.iter().map(|&v| new[v as usize]).collect(),
@@ -151,7 +172,11 @@ fn units_and_order_do_not_matter() {
             let order: Vec<usize> = (0..n).map(|v| (v * 7919 + 13) % n).collect();
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            let order = if sorted == same { order } else { (0..n).rev().collect() };
+            let order = if sorted == same {
+                order
+            } else {
+                (0..n).rev().collect()
+            };
             let (other_status, other, y) = step(&transformed(&tangle, scale, &order));
             assert_eq!(status, other_status);
             assert_eq!(report.constraints, other.constraints);
@@ -181,7 +206,10 @@ fn problems_without_a_solution_end_and_say_why() {
     t.start.iter_mut().for_each(|p| p.x = -p.x);
     let mut u = of_solid(&t, Material::Arap);
     let status = run(&mut u);
-    assert!(matches!(status, Status::Stalled | Status::MaxIterations), "{status:?}");
+    assert!(
+        matches!(status, Status::Stalled | Status::MaxIterations),
+        "{status:?}"
+    );
     let outcome = u.outcome();
     assert!(!outcome.not_positive.is_empty());
     assert!(!outcome.hopeless.is_empty() || outcome.hopeless_measure.is_some());
@@ -199,7 +227,10 @@ fn problems_without_a_solution_end_and_say_why() {
     let mut u = Untangling::of_plane(&t.rest, &t.start, &t.pins, &[], Material::Arap, &options)
         .expect("a problem");
     let status = run(&mut u);
-    assert!(matches!(status, Status::Stalled | Status::MaxIterations), "{status:?}");
+    assert!(
+        matches!(status, Status::Stalled | Status::MaxIterations),
+        "{status:?}"
+    );
     let outcome = u.outcome();
     assert!(!outcome.not_positive.is_empty());
     assert!(outcome.smallest_measure <= 0.0);
@@ -221,7 +252,10 @@ fn bad_problems_are_refused() {
     };
     assert!(matches!(
         make(&t.start[1..], &t.pins, &[], &fine),
-        Error::Build(BuildError::WrongLength { argument: "start", .. })
+        Error::Build(BuildError::WrongLength {
+            argument: "start",
+            ..
+        })
     ));
     let mut start = t.start.clone();
     start[3].y = f64::NAN;
@@ -235,10 +269,34 @@ fn bad_problems_are_refused() {
     };
     is_option(make(&t.start, &t.pins, &[target], &fine), "targets");
     for (options, name) in [
-        (GiniOptions { offset: 0.0, ..fine }, "offset"),
-        (GiniOptions { offset: f64::NAN, ..fine }, "offset"),
-        (GiniOptions { target_stiffness: -1.0, ..fine }, "targetStiffness"),
-        (GiniOptions { max_polish_iterations: 0, ..fine }, "maxPolishIterations"),
+        (
+            GiniOptions {
+                offset: 0.0,
+                ..fine
+            },
+            "offset",
+        ),
+        (
+            GiniOptions {
+                offset: f64::NAN,
+                ..fine
+            },
+            "offset",
+        ),
+        (
+            GiniOptions {
+                target_stiffness: -1.0,
+                ..fine
+            },
+            "targetStiffness",
+        ),
+        (
+            GiniOptions {
+                max_polish_iterations: 0,
+                ..fine
+            },
+            "maxPolishIterations",
+        ),
     ] {
         is_option(make(&t.start, &t.pins, &[], &options), name);
     }
@@ -248,6 +306,13 @@ fn bad_problems_are_refused() {
     is_option(made.err().expect("refused"), "energy");
     let mut bent = sheet(4, Bend::Sheared, Inside::Harmonic);
     bent.start[3].z = 0.5;
-    let made = Untangling::of_plane(&bent.rest, &bent.start, &bent.pins, &[], Material::Arap, &fine);
+    let made = Untangling::of_plane(
+        &bent.rest,
+        &bent.start,
+        &bent.pins,
+        &[],
+        Material::Arap,
+        &fine,
+    );
     is_option(made.err().expect("refused"), "start");
 }

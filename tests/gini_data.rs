@@ -24,7 +24,10 @@ fn unpacked(path: &Path) -> Vec<u8> {
 fn untangle(folder: &Path, in_plane: bool) -> usize {
     let [rest, init] = ["rest", "init"].map(|f| unpacked(&folder.join(format!("{f}.mesh.gz"))));
     let pins = fs::read_to_string(folder.join("pins.txt")).expect("pins");
-    let pins: Vec<u32> = pins.lines().map(|l| l.trim().parse().expect("an index")).collect();
+    let pins: Vec<u32> = pins
+        .lines()
+        .map(|l| l.trim().parse().expect("an index"))
+        .collect();
     let options = GiniOptions::default();
     let (mut untangling, elements) = if in_plane {
         let mesh = |bytes: &[u8]| read(bytes, Format::Medit).expect("a mesh").mesh;

@@ -1,16 +1,17 @@
 //! The primary solver (§4): local steps, the Laplacian, and energies, on the element loops of `wrapd` with a linear
 //! coupling.
 
+use super::dual::Primal;
 use crate::energy::Energy;
 use crate::geometry::{Elimination, RestShape};
 use crate::optim::{BuildError, Field};
 use crate::parallel;
 use crate::space::Space;
+use crate::wrapd::Linear;
 use crate::wrapd::block::{BLOCK, Block, BlockSums};
 use crate::wrapd::elements::{Elements, Model, Shape};
 use crate::wrapd::external::{External, Terms};
 use crate::wrapd::kernels::Pass;
-use crate::wrapd::Linear;
 use crate::wrapd::layout::{build_blocks, corner_lists};
 use crate::wrapd::system::System;
 
@@ -61,7 +62,9 @@ pub struct Admm {
     corners: Vec<u32>,
     terms: Terms,
     /// A (7a) and its factor.
-    pub system: System,
+    system: System,
+    /// Mean of 1/Aᵢᵢ.
+    compliance: f64,
     gradient: Vec<f64>,
 }
 
@@ -82,7 +85,10 @@ impl Admm {
         if !external.springs.is_empty() {
             let n = start.len() / shape.dimension;
             let most = rest.laplacian_diagonal(n).into_iter().fold(0.0, f64::max);
-            external.springs.iter_mut().for_each(|s| s.stiffness *= k * most);
+            external
+                .springs
+                .iter_mut()
+                .for_each(|s| s.stiffness *= k * most);
         }
         let terms = Terms::new(&external, start, &elimination.slot, elimination.free);
         let mut system = System::new(rest, elimination, Some(&external))?;
@@ -92,7 +98,10 @@ impl Admm {
         let blocks = build_blocks(rest, &elimination.slot, &shape);
         let (corner_begin, corners) = corner_lists(rest, &elimination.slot, elimination.free);
         let stride = Pass::Last.stride(shape.dimension);
+        let diagonal = system.diagonal();
+        let compliance = diagonal.map(f64::recip).sum::<f64>() / elimination.free.max(1) as f64;
         Ok(Self {
+            compliance,
             measure: rest.measure.iter().sum(),
             order,
             forces: vec![0.0; (rest.stretches + 1) * BLOCK * stride * blocks.len()],
@@ -108,7 +117,12 @@ impl Admm {
 
     /// The local step (5a), (5b) at these positions by slot, and b − A x̄ into `out`; with `reset` U is 0 before.
     /// Returns the most prox iterations.
-    pub fn local_step<const D: usize>(&mut self, x: &[[f64; D]], reset: bool, out: &mut [[f64; D]]) -> u32 {
+    pub fn local_step<const D: usize>(
+        &mut self,
+        x: &[[f64; D]],
+        reset: bool,
+        out: &mut [[f64; D]],
+    ) -> u32 {
         let k = self.body.shape.constants.rest_stiffness;
         self.pass(Pass::Forces, x.as_flattened());
         let sums = self.pass(
@@ -145,6 +159,14 @@ impl Admm {
             smallest: sums.smallest,
             largest: sums.largest,
             inverted: sums.inverted,
+        }
+    }
+
+    /// What the global step solves with.
+    pub fn primal(&mut self) -> Primal<'_> {
+        Primal {
+            factor: &mut self.system.factor,
+            compliance: self.compliance,
         }
     }
 

@@ -38,7 +38,8 @@ impl<const D: usize> Elements<D> {
         for e in 0..rest.len() {
             let simplex = rest.simplex(e);
             let corner = |i: usize| slot[simplex[i.min(D)] as usize];
-            this.slots.push([corner(0), corner(1), corner(2), corner(3)]);
+            this.slots
+                .push([corner(0), corner(1), corner(2), corner(3)]);
             // the facet opposite to a corner measures k A |g|
             let facets = (0..=D).map(|v| rest.hat_product(e, v, v).sqrt());
             let boundary = D as f64 * rest.measure[e] * facets.sum::<f64>();

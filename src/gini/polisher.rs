@@ -179,9 +179,11 @@ fn step<const D: usize>(
 /// Adds factor · Jᵀ y.
 fn spread<const D: usize>(rows: &[Row<D>], y: &[f64], factor: f64, out: &mut [[f64; D]]) {
     for (row, y) in rows.iter().zip(y) {
-        for (&v, g) in row.vertices.iter().zip(&row.gradient) {
-            for (out, g) in out[v as usize].iter_mut().zip(g) {
-                *out += factor * y * g;
+        let factor = factor * y;
+        for corner in 0..4 {
+            let out = &mut out[row.vertices[corner] as usize];
+            for i in 0..D {
+                out[i] += factor * row.gradient[corner][i];
             }
         }
     }
@@ -189,9 +191,10 @@ fn spread<const D: usize>(rows: &[Row<D>], y: &[f64], factor: f64, out: &mut [[f
 
 fn gather<const D: usize>(row: &Row<D>, x: &[[f64; D]]) -> f64 {
     let mut sum = 0.0;
-    for (&v, g) in row.vertices.iter().zip(&row.gradient) {
-        for (x, g) in x[v as usize].iter().zip(g) {
-            sum += x * g;
+    for corner in 0..4 {
+        let x = &x[row.vertices[corner] as usize];
+        for i in 0..D {
+            sum += x[i] * row.gradient[corner][i];
         }
     }
     sum

@@ -1,10 +1,10 @@
 //! What is to be untangled.
 
+use super::simplex::signed_measure;
 use crate::certificate::{orientation, orientation_of_tetrahedron};
 use crate::disjoint_sets::DisjointSets;
 use crate::geometry::RestShape;
 use crate::optim::{BuildError, Spring};
-use super::simplex::signed_measure;
 use crate::wrapd::External;
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;

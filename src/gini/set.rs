@@ -25,7 +25,11 @@ impl ConstraintSet {
 
     /// Adds all elements below their η that are not in it yet (§6.1), of these values c. Returns how many there
     /// are below η.
-    pub fn add_elements<const D: usize>(&mut self, elements: &Elements<D>, values: &[f64]) -> usize {
+    pub fn add_elements<const D: usize>(
+        &mut self,
+        elements: &Elements<D>,
+        values: &[f64],
+    ) -> usize {
         let mut below = 0;
         for (e, &value) in values.iter().enumerate() {
             if !(value >= elements.offset(e)) && elements.movable[e] {

@@ -102,13 +102,22 @@ pub struct Gini<const D: usize> {
     hopeless_measure: Option<f64>,
     /// η relative to the rest measure, where it has not been reduced.
     first_offset: f64,
+    /// Are Z and U to be set from x̄?
+    begins_anew: bool,
+    /// Steps in a row that have not lessened the number of inverted elements.
+    idle: usize,
     report: StepReport,
 }
+
+/// Steps without a better state after which the primary solver begins anew, and after which it ends.
+const PATIENCE: usize = 5;
+const MOST_IDLE: usize = 15;
 
 impl<const D: usize> Gini<D> {
     fn iterate(&mut self) -> Result<(), SolveError> {
         let begun = Stopwatch::start();
         let iteration = self.report.iteration + 1;
+        let before = self.best.inverted;
         let mut step = GiniStep {
             first_offset: self.first_offset,
             ..Default::default()
@@ -117,7 +126,8 @@ impl<const D: usize> Gini<D> {
         let clock = Stopwatch::start();
         let prox = self
             .admm
-            .local_step(&self.iterate, iteration == 1, &mut self.step);
+            .local_step(&self.iterate, self.begins_anew, &mut self.step);
+        self.begins_anew = false;
         let local = Phase::new(PhaseKind::Local, prox, clock);
 
         let clock = Stopwatch::start();
@@ -125,7 +135,7 @@ impl<const D: usize> Gini<D> {
         step.qp_iterations = global_step(
             &mut self.set.list,
             &self.iterate,
-            &mut self.admm.system.factor,
+            self.admm.primal(),
             &mut self.step,
             self.options.max_qp_iterations,
         );
@@ -133,7 +143,9 @@ impl<const D: usize> Gini<D> {
             (0..D).for_each(|i| x[i] += s[i]);
         }
         self.keep_centroids();
-        self.check_finite(iteration)?;
+        if !self.iterate.as_flattened().iter().all(|x| x.is_finite()) {
+            self.begin_anew();
+        }
         self.set.remove_inactive();
         step.active = self.set.list.len();
         let global = Phase::new(PhaseKind::Global, step.qp_iterations as u32, clock);
@@ -152,15 +164,36 @@ impl<const D: usize> Gini<D> {
         let first = self.first_offset;
         step.reduced_offsets = offsets.iter().filter(|&&o| o < first).count();
         self.report.gini = Some(step);
-        self.report
-            .conclude(done.then_some(Criterion::Injective), self.options.max_iterations);
-        if self.report.status == Status::MaxIterations {
+        self.report.conclude(
+            done.then_some(Criterion::Injective),
+            self.options.max_iterations,
+        );
+        if self.report.status == Status::Running {
+            self.idle = if self.best.inverted < before {
+                0
+            } else {
+                self.idle + 1
+            };
+            if self.idle >= MOST_IDLE {
+                self.report.status = Status::Stalled;
+            } else if self.idle.is_multiple_of(PATIENCE) && self.idle > 0 {
+                self.begin_anew();
+            }
+        }
+        if matches!(self.report.status, Status::MaxIterations | Status::Stalled) {
             self.hand_out_best();
         }
         self.report.seconds += begun.seconds();
         let evaluate = Phase::new(PhaseKind::Evaluate, polished, clock);
         self.report.phases = vec![local, global, evaluate];
         Ok(())
+    }
+
+    /// Lets the primary solver begin at the best state, without what it has learned.
+    fn begin_anew(&mut self) {
+        self.iterate.copy_from_slice(&self.best.x);
+        self.begins_anew = true;
+        self.set.list.iter_mut().for_each(|c| c.lambda = 0.0);
     }
 
     /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1).
@@ -254,14 +287,6 @@ impl<const D: usize> Gini<D> {
                     self.iterate[s as usize][i] += centroid[i] - now[i];
                 }
             }
-        }
-    }
-
-    fn check_finite(&self, iteration: usize) -> Result<(), SolveError> {
-        let bad = |&slot: &u32| !self.iterate[slot as usize].iter().all(|x| x.is_finite());
-        match self.slot.iter().position(bad) {
-            Some(vertex) => Err(SolveError::NonFinite { iteration, vertex }),
-            None => Ok(()),
         }
     }
 

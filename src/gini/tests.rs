@@ -1,7 +1,7 @@
 //! Constraints against finite differences, the dual problem against brute force, zones against a plain search.
 
 use super::constraint::{Constraint, Key, Law};
-use super::dual::global_step;
+use super::dual::{Primal, global_step};
 use super::polisher::polish;
 use super::simplex::{Corners, signed_measure};
 use super::zones::Zones;
@@ -12,14 +12,19 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
     fn below(&mut self, n: usize) -> u32 {
         (((self.next() + 1.0) * 0.5 * n as f64) as u32).min(n as u32 - 1)
     }
     fn points<const D: usize>(&mut self, n: usize) -> Vec<[f64; D]> {
-        (0..n).map(|_| std::array::from_fn(|_| self.next())).collect()
+        (0..n)
+            .map(|_| std::array::from_fn(|_| self.next()))
+            .collect()
     }
 }
 
@@ -129,7 +134,9 @@ fn brute_force<const D: usize>(
                 vector[n + k] = right[r];
             }
         }
-        let Some(x) = solve(matrix, vector) else { continue };
+        let Some(x) = solve(matrix, vector) else {
+            continue;
+        };
         let meets = |r: usize| (0..n).map(|i| rows[r][i] * x[i]).sum::<f64>() >= right[r] - 1e-9;
         if x[n..].iter().all(|&l| l >= -1e-9) && (0..rows.len()).all(meets) {
             return x[..n].to_vec();
@@ -171,11 +178,23 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
             constraints.push(c);
         }
         let expected = brute_force(&a, &b, &rows, &right);
+        let compliance = 1e-6;
+        let factor = &mut factor;
         let mut step = b.clone();
-        global_step(&mut constraints, &x, &mut factor, &mut step, 400);
+        global_step(
+            &mut constraints,
+            &x,
+            Primal { factor, compliance },
+            &mut step,
+            400,
+        );
         // the constraints are met to a tenth of η, as the solver promises
         for (row, right) in rows.iter().zip(&right) {
-            let value: f64 = row.iter().zip(step.as_flattened()).map(|(r, s)| r * s).sum();
+            let value: f64 = row
+                .iter()
+                .zip(step.as_flattened())
+                .map(|(r, s)| r * s)
+                .sum();
             assert!(value >= right - 0.0051, "{value} {right}");
         }
         let apart = step.as_flattened().iter().zip(&expected);
@@ -184,11 +203,15 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
         // a warm start needs no iteration
         let again = constraints.clone();
         let mut step = b.clone();
-        assert_eq!(global_step(&mut constraints, &x, &mut factor, &mut step, 400), 0);
+        let primal = Primal { factor, compliance };
+        assert_eq!(global_step(&mut constraints, &x, primal, &mut step, 400), 0);
         assert_eq!(constraints, again);
         solved += usize::from(constraints.iter().any(|c| c.lambda > 0.0));
     }
-    assert!(solved > 20, "most of the problems have active constraints: {solved}");
+    assert!(
+        solved > 20,
+        "most of the problems have active constraints: {solved}"
+    );
 }
 
 #[test]
@@ -215,7 +238,11 @@ fn zones_are_connected_and_do_not_share_what_moves() {
         let mut seen = vec![false; count];
         for z in 0..zones.len() {
             for (place, &v) in zones.vertices(z).iter().enumerate() {
-                assert_eq!(zone_of[v as usize], usize::MAX, "a vertex is in one zone, once");
+                assert_eq!(
+                    zone_of[v as usize],
+                    usize::MAX,
+                    "a vertex is in one zone, once"
+                );
                 assert!(movable[v as usize]);
                 assert_eq!(zones.local(v) as usize, place);
                 zone_of[v as usize] = z;
@@ -263,7 +290,8 @@ fn fan(n: usize) -> (Vec<Constraint>, Vec<[f64; 2]>, Vec<bool>) {
         x.push([angle.cos(), angle.sin()]);
     }
     let ring = |k: usize| 1 + (k % n) as u32;
-    let triangles = (0..n).map(|k| constraint([0, ring(k), ring(k + 1), ring(k + 1)], 1.0, 0.1 / n as f64));
+    let triangles =
+        (0..n).map(|k| constraint([0, ring(k), ring(k + 1), ring(k + 1)], 1.0, 0.1 / n as f64));
     let movable = (0..=n).map(|v| v == 0).collect();
     (triangles.collect(), x, movable)
 }
@@ -280,8 +308,16 @@ fn a_vertex_finds_into_its_fan() {
             assert!(done.zones <= 1 && done.after <= done.before && done.before <= before);
             before = done.after;
         }
-        assert!(constraints.iter().all(|c| c.value(&x) > 0.0), "{n}: {:?}", x[0]);
-        assert!(constraints.iter().all(|c| (1e-4..=1e-1).contains(&c.damping)));
+        assert!(
+            constraints.iter().all(|c| c.value(&x) > 0.0),
+            "{n}: {:?}",
+            x[0]
+        );
+        assert!(
+            constraints
+                .iter()
+                .all(|c| (1e-4..=1e-1).contains(&c.damping))
+        );
         // what is held has not moved
         assert_eq!(x[1], [1.0, 0.0]);
     }

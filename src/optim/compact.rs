@@ -63,7 +63,8 @@ impl Compact {
             }
         }
         let olds = self.pairs.iter();
-        self.ss.push(olds.clone().map(|(old, _)| dot(s, old)).collect());
+        self.ss
+            .push(olds.clone().map(|(old, _)| dot(s, old)).collect());
         self.sy.push(olds.map(|(_, old)| dot(s, old)).collect());
         self.theta = change / curvature;
     }

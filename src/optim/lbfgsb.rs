@@ -104,9 +104,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// How far λ may go along `direction`.
 fn room(lambda: &[f64], direction: &[f64]) -> f64 {
     let steps = lambda.iter().zip(direction);
-    steps.fold(f64::INFINITY, |most, (&l, &d)| {
-        if d < 0.0 { most.min(l / -d) } else { most }
-    })
+    steps.fold(
+        f64::INFINITY,
+        |most, (&l, &d)| {
+            if d < 0.0 { most.min(l / -d) } else { most }
+        },
+    )
 }
 
 /// The generalised Cauchy point (algorithm CP), and Wᵀ(it − λ) in the model.
@@ -137,7 +140,11 @@ fn cauchy_point(model: &mut Compact, lambda: &[f64], gradient: &[f64], cauchy: &
     let mut bend = theta * square - model.form(&p, &p, &mut product);
     let floor = f64::EPSILON * theta * square;
     let mut reached = 0.0;
-    let mut left = if bend > floor { -slope / bend } else { -slope / floor.max(f64::MIN_POSITIVE) };
+    let mut left = if bend > floor {
+        -slope / bend
+    } else {
+        -slope / floor.max(f64::MIN_POSITIVE)
+    };
     for &(t, index) in &breaks {
         let ahead = t - reached;
         if left < ahead {
@@ -150,8 +157,8 @@ fn cauchy_point(model: &mut Compact, lambda: &[f64], gradient: &[f64], cauchy: &
             *c += ahead * p;
         }
         model.row(i, &mut row);
-        slope += ahead * bend + g * g - theta * g * lambda[i]
-            - g * model.form(&row, &c, &mut product);
+        slope +=
+            ahead * bend + g * g - theta * g * lambda[i] - g * model.form(&row, &c, &mut product);
         bend -= theta * g * g
             + 2.0 * g * model.form(&row, &p, &mut product)
             + g * g * model.form(&row, &row, &mut product);

@@ -37,7 +37,11 @@ impl Bend {
                 // x along a circle in the plane of x and y
                 let angle = 1.2 * amount * p.x;
                 let radius = 1.0 / (1.2 * amount) - p.y;
-                DVec3::new(radius * angle.sin(), 1.0 / (1.2 * amount) - radius * angle.cos(), p.z)
+                DVec3::new(
+                    radius * angle.sin(),
+                    1.0 / (1.2 * amount) - radius * angle.cos(),
+                    p.z,
+                )
             }
             Bend::Sheared => DVec3::new(p.x + 2.0 * amount * p.y, p.y + amount * p.z, p.z),
             Bend::Squashed => {
@@ -78,8 +82,14 @@ fn images<const K: usize>(
     bend: Bend,
     is_positive: impl Fn([DVec3; K]) -> bool,
 ) -> Vec<DVec3> {
-    let low = rest.positions.iter().fold(DVec3::INFINITY, |a, &p| a.min(p));
-    let high = rest.positions.iter().fold(-DVec3::INFINITY, |a, &p| a.max(p));
+    let low = rest
+        .positions
+        .iter()
+        .fold(DVec3::INFINITY, |a, &p| a.min(p));
+    let high = rest
+        .positions
+        .iter()
+        .fold(-DVec3::INFINITY, |a, &p| a.max(p));
     let extent = high - low;
     let turn = |p: DVec3| match () {
         _ if extent.x >= extent.y && extent.x >= extent.z => p,
@@ -88,7 +98,9 @@ fn images<const K: usize>(
     };
     let scale = 2.0 / extent.max_element();
     let middle = 0.5 * (low + high);
-    rest.positions.iter_mut().for_each(|p| *p = turn((*p - middle) * scale));
+    rest.positions
+        .iter_mut()
+        .for_each(|p| *p = turn((*p - middle) * scale));
     let mut amount = 1.0;
     loop {
         let images: Vec<DVec3> = rest.positions.iter().map(|&p| bend.of(p, amount)).collect();
@@ -120,7 +132,9 @@ fn place<const K: usize>(
         Inside::Random => {
             let mut state = seed;
             let mut next = || {
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                state = state
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695_040_888_963_407);
                 (state >> 11) as f64 / (1u64 << 53) as f64
             };
             for &v in &free {
@@ -195,7 +209,10 @@ pub fn solid(shape: SolidShape, count: usize, bend: Bend, inside: Inside) -> Tan
     assert!(!turned);
     let mut is_pinned = vec![false; rest.positions.len()];
     let boundary = rest.boundary().expect("a solid has a boundary");
-    boundary.vertices.iter().for_each(|&v| is_pinned[v as usize] = true);
+    boundary
+        .vertices
+        .iter()
+        .for_each(|&v| is_pinned[v as usize] = true);
     place(rest, &shape, images, is_pinned, inside, 7)
 }
 
@@ -204,21 +221,29 @@ pub fn sheet(n: usize, bend: Bend, inside: Inside) -> Tangle<3> {
     let mut rest = SurfaceMesh::default();
     for row in 0..=n {
         for column in 0..=n {
-            rest.positions.push(DVec3::new(column as f64, row as f64, 0.0) / n as f64);
+            rest.positions
+                .push(DVec3::new(column as f64, row as f64, 0.0) / n as f64);
         }
     }
     for row in 0..n {
         for column in 0..n {
             let v = (row * (n + 1) + column) as u32;
             let above = v + n as u32 + 1;
-            rest.simplices.extend([[v, v + 1, above + 1], [v, above + 1, above]]);
+            rest.simplices
+                .extend([[v, v + 1, above + 1], [v, above + 1, above]]);
         }
     }
     let flatten = |p: DVec3| DVec2::new(p.x, p.y);
     // a turn about the middle instead of a twist about x, which would leave the plane
-    let mut images = images(&mut rest, if bend == Bend::Twisted { Bend::Bent } else { bend }, |[a, b, c]| {
-        orientation(flatten(a), flatten(b), flatten(c)).is_gt()
-    });
+    let mut images = images(
+        &mut rest,
+        if bend == Bend::Twisted {
+            Bend::Bent
+        } else {
+            bend
+        },
+        |[a, b, c]| orientation(flatten(a), flatten(b), flatten(c)).is_gt(),
+    );
     for p in &mut images {
         if bend == Bend::Twisted {
             let angle = 1.5 * p.length();

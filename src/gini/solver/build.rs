@@ -37,7 +37,10 @@ impl<const D: usize> Gini<D> {
         energy: E,
         options: GiniOptions,
     ) -> Result<Self, BuildError> {
-        assert!(S::DIM == D && S::STRETCHES == D, "a space of {D} dimensions");
+        assert!(
+            S::DIM == D && S::STRETCHES == D,
+            "a space of {D} dimensions"
+        );
         parallel::in_pool(|| Self::build(problem, Body::new::<S, E>(energy), options))
     }
 
@@ -59,7 +62,10 @@ impl<const D: usize> Gini<D> {
         }
         let floating = problem.floating(D);
         let mut is_held: Vec<bool> = used.iter().map(|used| !used).collect();
-        problem.pins.iter().for_each(|&p| is_held[p as usize] = true);
+        problem
+            .pins
+            .iter()
+            .for_each(|&p| is_held[p as usize] = true);
         // of a component that nothing holds one vertex stays where it is in the linear system
         let mut fixed = is_held.clone();
         floating.iter().for_each(|c| fixed[c[0] as usize] = true);
@@ -81,7 +87,14 @@ impl<const D: usize> Gini<D> {
         let room = image.map_or(1.0, |(image, _)| (image / at_rest).clamp(1e-6, 1.0));
         let first_offset = room * options.offset;
         let elements = Elements::new(&rest, &slot, &held, first_offset);
-        let admm = Admm::new(body, &rest, order.clone(), &elimination, problem.start, &external)?;
+        let admm = Admm::new(
+            body,
+            &rest,
+            order.clone(),
+            &elimination,
+            problem.start,
+            &external,
+        )?;
         let mut values = vec![0.0; elements.len()];
         elements.values(&x, &mut values);
         let mut set = ConstraintSet::new(elements.len());
@@ -112,6 +125,8 @@ impl<const D: usize> Gini<D> {
             hopeless: Vec::new(),
             hopeless_measure: image.filter(|(image, error)| image <= error).map(|i| i.0),
             first_offset,
+            begins_anew: true,
+            idle: 0,
             report: StepReport::at_start(),
             elements,
             slot,
