@@ -10,8 +10,10 @@
 //!    share no vertex, and each zone takes a step of Levenberg and Marquardt's method (12), (13);
 //! 5. once all elements that are still inverted at x̂ are better than at x, x moves to x̂ (§5.1).
 //!
-//! It ends when no element is inverted or degenerate by exact predicates. Where it has no better state for
-//! several steps, the primary solver begins anew from the best one, and after some more it ends with that.
+//! It ends when no element is inverted or degenerate by exact predicates, or, with the best state, after 15 steps without
+//! a better one. Not in the paper: after the first, second, fourth, … step the primary solver takes some steps without
+//! constraints and begins anew. Constraints keep elements in place that have wound around an edge twice, where no
+//! polishing helps; without them less energy unwinds these.
 //!
 //! **η** is a tenth of an element's rest measure (less in proportion where pins leave less room than there is at rest),
 //! and falls by itself in the zones in which the polisher ends with inverted elements: those ask for more measure than

@@ -53,6 +53,12 @@ impl ConstraintSet {
         }
     }
 
+    /// Removes all.
+    pub fn clear(&mut self) {
+        self.list.clear();
+        self.place.fill(NONE);
+    }
+
     /// Takes over the elements' offsets where they have changed.
     pub fn set_offsets<const D: usize>(&mut self, elements: &Elements<D>) {
         for constraint in &mut self.list {

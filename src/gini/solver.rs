@@ -109,9 +109,16 @@ pub struct Gini<const D: usize> {
     report: StepReport,
 }
 
-/// Steps without a better state after which the primary solver begins anew, and after which it ends.
-const PATIENCE: usize = 5;
+/// Steps without a better state after which it ends.
 const MOST_IDLE: usize = 15;
+
+/// Steps without constraints after the first step that has not ended the run; after the second, the fourth, … twice as
+/// many, up to the most.
+const RELAXATION: usize = 8;
+const MOST_RELAXATION: usize = 64;
+
+/// Iterations of the polisher in a row that do not lessen the number of inverted elements, after which it ends.
+const MOST_VAIN: usize = 12;
 
 impl<const D: usize> Gini<D> {
     fn iterate(&mut self) -> Result<(), SolveError> {
@@ -132,17 +139,7 @@ impl<const D: usize> Gini<D> {
 
         let clock = Stopwatch::start();
         step.constraints = self.set.list.len();
-        step.qp_iterations = global_step(
-            &mut self.set.list,
-            &self.iterate,
-            self.admm.primal(),
-            &mut self.step,
-            self.options.max_qp_iterations,
-        );
-        for (x, s) in self.iterate.iter_mut().zip(&self.step) {
-            (0..D).for_each(|i| x[i] += s[i]);
-        }
-        self.keep_centroids();
+        step.qp_iterations = self.primary_step();
         if !self.iterate.as_flattened().iter().all(|x| x.is_finite()) {
             self.begin_anew();
         }
@@ -176,8 +173,8 @@ impl<const D: usize> Gini<D> {
             };
             if self.idle >= MOST_IDLE {
                 self.report.status = Status::Stalled;
-            } else if self.idle.is_multiple_of(PATIENCE) && self.idle > 0 {
-                self.begin_anew();
+            } else if iteration.is_power_of_two() {
+                self.relax((RELAXATION * iteration).min(MOST_RELAXATION));
             }
         }
         if matches!(self.report.status, Status::MaxIterations | Status::Stalled) {
@@ -193,12 +190,42 @@ impl<const D: usize> Gini<D> {
     fn begin_anew(&mut self) {
         self.iterate.copy_from_slice(&self.best.x);
         self.begins_anew = true;
-        self.set.list.iter_mut().for_each(|c| c.lambda = 0.0);
+        self.set.clear();
+    }
+
+    /// Steps of the primary solver without constraints. Elements can be positive all of them but one or two, and
+    /// wind around an edge twice: from there no polishing helps, but less energy does.
+    fn relax(&mut self, count: usize) {
+        self.set.clear();
+        for k in 0..count {
+            self.admm.local_step(&self.iterate, k == 0, &mut self.step);
+            self.primary_step();
+        }
+        self.elements.values(&self.iterate, &mut self.trial_values);
+        self.set.add_elements(&self.elements, &self.trial_values);
+        self.begins_anew = true;
+    }
+
+    /// Solves the quadratic problem at x̄ and moves it there. Returns the iterations.
+    fn primary_step(&mut self) -> usize {
+        let iterations = global_step(
+            &mut self.set.list,
+            &self.iterate,
+            self.admm.primal(),
+            &mut self.step,
+            self.options.max_qp_iterations,
+        );
+        for (x, s) in self.iterate.iter_mut().zip(&self.step) {
+            (0..D).for_each(|i| x[i] += s[i]);
+        }
+        self.keep_centroids();
+        iterations
     }
 
     /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1).
     fn polish(&mut self, step: &mut GiniStep) {
         self.trial.copy_from_slice(&self.iterate);
+        let (mut fewest, mut vain) = (usize::MAX, 0);
         for count in 0..=self.options.max_polish_iterations {
             self.elements.values(&self.trial, &mut self.trial_values);
             let violated = self.set.add_elements(&self.elements, &self.trial_values);
@@ -216,7 +243,11 @@ impl<const D: usize> Gini<D> {
                 step.accepted = true;
                 return;
             }
-            if count == self.options.max_polish_iterations {
+            (fewest, vain) = match inverted < fewest {
+                true => (inverted, 0),
+                false => (fewest, vain + 1),
+            };
+            if count == self.options.max_polish_iterations || vain > MOST_VAIN {
                 break;
             }
             let polished = polish(
