@@ -38,10 +38,10 @@ fn solids_are_untangled_from_every_start() {
     for (shape, bend) in [
         (SolidShape::Box, Bend::Twisted),
         (SolidShape::Bar, Bend::Bent),
-        (SolidShape::Disk, Bend::Squashed),
+        (SolidShape::Beam, Bend::Squashed),
     ] {
         for inside in Inside::ALL {
-            let t = solid(shape, 1500, bend, inside);
+            let t = solid(shape, 2000, bend, inside);
             let mut u = of_solid(&t, Material::Arap);
             let status = run(&mut u);
             assert_eq!(
@@ -198,7 +198,7 @@ fn a_start_that_is_fine_is_left_alone() {
     assert_eq!(u.positions(), t.start);
 }
 
-/// Two tetrahedra of a box whose boundary is turned inside out cannot all be positive.
+/// What pins make impossible is said at once, what is impossible otherwise after a while.
 #[test]
 fn problems_without_a_solution_end_and_say_why() {
     // mirrored boundary: the inside has nowhere to go
