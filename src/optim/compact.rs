@@ -181,7 +181,7 @@ impl Compact {
 
 /// Solves A X = B in place of B (n rows) by Gaussian elimination with row pivots; false where A is singular.
 fn eliminate(a: &mut [f64], b: &mut [f64], n: usize) -> bool {
-    let width = if n == 0 { 0 } else { b.len() / n };
+    let width = b.len() / n.max(1);
     for column in 0..n {
         let size = |row: usize| a[row * n + column].abs();
         let pivot = (column + 1..n).fold(column, |best, row| match size(row) > size(best) {
