@@ -155,6 +155,7 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
         let x: Vec<[f64; D]> = random.points(n + 2);
         let b: Vec<[f64; D]> = random.points(n);
         let mut constraints = Vec::new();
+        let mut used: Vec<Vec<u32>> = Vec::new();
         let mut rows = Vec::new();
         let mut right = Vec::new();
         while constraints.len() < 5 {
@@ -162,6 +163,13 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
             if (0..4).any(|i| (0..i).any(|j| s[i] == s[j])) {
                 continue;
             }
+            // the same simplex twice, turned over, could not be positive both times
+            let mut sorted = s;
+            sorted[..=D].sort_unstable();
+            if used.contains(&sorted[..=D].to_vec()) {
+                continue;
+            }
+            used.push(sorted[..=D].to_vec());
             let slots = if D == 2 { [s[0], s[1], s[2], s[2]] } else { s };
             let c = constraint(slots, 1.0, 0.05);
             let p = slots.map(|s| x[s as usize]);
