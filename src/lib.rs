@@ -16,6 +16,7 @@ pub mod embedding;
 pub mod energy;
 mod error;
 pub mod geometry;
+pub mod gini;
 pub mod lim;
 pub mod linalg;
 pub mod local_global;

@@ -69,7 +69,7 @@ impl Deformation {
 }
 
 /// Fails if not all have the same z.
-fn flat(option: &'static str, positions: &[DVec3]) -> Result<(), BuildError> {
+pub(super) fn flat(option: &'static str, positions: &[DVec3]) -> Result<(), BuildError> {
     let level = positions[0].z;
     match positions.iter().position(|p| p.z != level) {
         Some(vertex) => Err(BuildError::InvalidOption {

@@ -6,9 +6,11 @@ mod injective;
 mod options;
 mod problem;
 mod supports;
+mod untangling;
 
 pub use cloth::ClothOptions;
 pub use options::{DeformationMethod, DeformationOptions, Material};
 pub use problem::Deformation;
 pub(crate) use supports::Supports;
 pub use supports::Target;
+pub use untangling::Untangling;

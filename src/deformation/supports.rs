@@ -105,9 +105,21 @@ impl Supports {
         }
     }
 
-    /// Targets as moves of held vertices and springs on free ones.
+    /// Targets as moves of held vertices and springs on free ones. Every component must have a pin or a target.
     #[allow(clippy::type_complexity)]
     pub fn split(
+        &self,
+        targets: &[Target],
+        stiffness: &[f64],
+    ) -> Result<(Vec<(u32, [f64; 3])>, Vec<Spring>), BuildError> {
+        let parts = self.split_free(targets, stiffness)?;
+        self.check(targets.iter().map(|t| t.vertex))?;
+        Ok(parts)
+    }
+
+    /// The same where components may be free.
+    #[allow(clippy::type_complexity)]
+    pub fn split_free(
         &self,
         targets: &[Target],
         stiffness: &[f64],
@@ -138,7 +150,6 @@ impl Supports {
                 }),
             }
         }
-        self.check(targets.iter().map(|t| t.vertex))?;
         Ok((moved, springs))
     }
 }

@@ -1,6 +1,6 @@
 //! The one object-safe interface of all iterative solvers.
 
-use super::{LimStep, SolveError, Stopwatch, Yardstick};
+use super::{GiniStep, LimStep, SolveError, Stopwatch, Yardstick};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -15,6 +15,8 @@ pub enum Criterion {
     GradientNorm,
     /// The method is direct: one step is all of it.
     Direct,
+    /// No element is inverted or degenerate, by exact predicates.
+    Injective,
 }
 
 /// Where a solver stands. Not having converged is a status, never an error.
@@ -115,6 +117,9 @@ pub struct StepReport {
     /// Of a locally injective map: what the step was made with.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lim: Option<LimStep>,
+    /// Of a globally injective map: its quadratic problem, and its polisher.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gini: Option<GiniStep>,
     /// Seconds spent in steps, setup and the time between steps apart.
     pub seconds: f64,
     /// The phases, in order.
@@ -136,6 +141,7 @@ impl StepReport {
             reweighted: false,
             switched_at: None,
             lim: None,
+            gini: None,
             seconds: 0.0,
             phases: Vec::new(),
         }

@@ -2,6 +2,7 @@
 
 use crate::miqp::Miqp;
 use crate::relaxation::Relaxation;
+use crate::untangle::Untangle;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use foldfree::deformation::{ClothOptions, DeformationOptions, Material};
@@ -27,6 +28,8 @@ pub enum Command {
     Parameterize(Parameterize),
     /// Deform an elastic solid under pins.
     Deform(Deform),
+    /// Untangle a map of a solid, or of triangles in the plane.
+    Untangle(Untangle),
     /// Let a cloth come to rest under its weight.
     Cloth(Cloth),
     /// Solve a mixed-integer quadratic problem.

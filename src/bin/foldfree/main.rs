@@ -1,6 +1,6 @@
-//! The command line: flatten a mesh, deform a body, solve a mixed-integer problem, check a map, make a sample mesh.
+//! The command line: flatten a mesh, deform or untangle a body, solve a mixed-integer problem, check a map, make a sample mesh.
 //!
-//! Exit code 0: done (`parameterize`, `deform`, `cloth`, `miqp`: converged; `check`: nothing folds); 2: not (ran out of
+//! Exit code 0: done (`parameterize`, `deform`, `cloth`, `miqp`: converged; `untangle`, `check`: nothing folds); 2: not (ran out of
 //! iterations; the map folds); 1: an error, in one line on stderr.
 
 mod arguments;
@@ -19,6 +19,7 @@ mod reference;
 mod relaxation;
 mod report;
 mod solids;
+mod untangle;
 
 use arguments::{Arguments, Command};
 use clap::Parser;
@@ -58,6 +59,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.command {
         Command::Parameterize(options) => parameterize::run(options),
         Command::Deform(options) => deform::run(options),
+        Command::Untangle(options) => untangle::run(options),
         Command::Cloth(options) => cloth::run(options),
         Command::Miqp(options) => miqp::run(options),
         Command::Check(options) => check::run(options),

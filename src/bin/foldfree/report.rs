@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use foldfree::certificate::{Certificate, SolidCertificate};
-use foldfree::optim::{LimStep, Phase, PhaseKind, Status, StepReport};
+use foldfree::optim::{GiniStep, LimStep, Phase, PhaseKind, Status, StepReport};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
 
@@ -59,6 +59,9 @@ pub struct Iteration {
     /// Of locally injective maps: α, μ, σ, and where the handles are.
     #[serde(serialize_with = "snake_keys", skip_serializing_if = "Option::is_none")]
     pub lim: Option<LimStep>,
+    /// Of untangling: the quadratic problem, the polisher, and η.
+    #[serde(serialize_with = "snake_keys", skip_serializing_if = "Option::is_none")]
+    pub gini: Option<GiniStep>,
     /// ‖x − x*‖/‖x₀ − x*‖ against the reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub position_error: Option<f64>,
@@ -92,6 +95,7 @@ impl From<&StepReport> for Iteration {
             reweighted: step.reweighted,
             switched_at: step.switched_at,
             lim: step.lim,
+            gini: step.gini.clone(),
             position_error: None,
             phases: step.phases.iter().map(phase).collect(),
         }

@@ -1,0 +1,231 @@
+//! Untangling: from any start to a map without inverted elements.
+
+use super::body::check;
+use super::injective::flat;
+use super::{Material, Supports, Target};
+use crate::Error;
+use crate::energy::{Arap, Dirichlet, NeoHookean, StableNeoHookean, SymmetricDirichlet};
+use crate::geometry::RestShape;
+use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome};
+use crate::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};
+use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
+use crate::space::{Plane, Solid};
+use glam::DVec3;
+
+/// An untangling in progress, of a solid or of triangles in a plane z = constant.
+pub struct Untangling {
+    solver: Body,
+    notes: Vec<String>,
+    setup_seconds: f64,
+    /// z, in the plane.
+    level: f64,
+}
+
+enum Body {
+    Plane(Box<Gini<2>>),
+    Solid(Box<Gini<3>>),
+}
+
+impl Untangling {
+    /// Of tetrahedra. `start` has one position a vertex; pins are held there, or, where they have targets, at these;
+    /// targets of other vertices pull. A component without either is free.
+    ///
+    /// # Errors
+    /// [`MeshError`](crate::mesh::MeshError) for a rest shape that is none, [`BuildError`] for pins, targets, start
+    /// or options that do not fit it, and for `material` st-venant-kirchhoff, whose minima fold.
+    pub fn of_solid(
+        rest: &SolidMesh,
+        start: &[DVec3],
+        pins: &[u32],
+        targets: &[Target],
+        material: Material,
+        options: &GiniOptions,
+    ) -> Result<Self, Error> {
+        let clock = Stopwatch::start();
+        check(rest, start)?;
+        let (shape, turned) = RestShape::of_solid(rest)?;
+        let mut notes = Vec::new();
+        if turned {
+            notes.push("the mesh was inside out: all tetrahedra were turned".into());
+        }
+        let prepared = Prepared::new(rest, start, pins, targets, 3, &mut notes)?;
+        let problem = prepared.problem(&shape);
+        let solver = Box::new(match material {
+            Material::NeoHookean { young, poisson } => {
+                Gini::new::<Solid, _>(problem, NeoHookean::new(young, poisson)?, *options)
+            }
+            Material::StableNeoHookean { young, poisson } => {
+                Gini::new::<Solid, _>(problem, StableNeoHookean::new(young, poisson)?, *options)
+            }
+            Material::Arap => Gini::new::<Solid, _>(problem, Arap, *options),
+            Material::SymmetricDirichlet => {
+                Gini::new::<Solid, _>(problem, SymmetricDirichlet, *options)
+            }
+            Material::Dirichlet => Gini::new::<Solid, _>(problem, Dirichlet, *options),
+            Material::StVenantKirchhoff { .. } => return Err(unknown_energy("solids").into()),
+        }?);
+        Ok(Self {
+            solver: Body::Solid(solver),
+            notes,
+            setup_seconds: clock.seconds(),
+            level: 0.0,
+        })
+    }
+
+    /// The same of triangles in a plane z = constant, with ARAP, symmetric Dirichlet or Dirichlet.
+    ///
+    /// # Errors
+    /// The same, and `InvalidOption` for vertices outside the plane of the first.
+    pub fn of_plane(
+        rest: &SurfaceMesh,
+        start: &[DVec3],
+        pins: &[u32],
+        targets: &[Target],
+        material: Material,
+        options: &GiniOptions,
+    ) -> Result<Self, Error> {
+        let clock = Stopwatch::start();
+        check(rest, start)?;
+        flat("rest", &rest.positions)?;
+        flat("start", start)?;
+        let (shape, turned) = RestShape::of_plane(rest)?;
+        let mut notes = Vec::new();
+        if turned {
+            notes.push("the mesh was clockwise: all triangles were turned".into());
+        }
+        let prepared = Prepared::new(rest, start, pins, targets, 2, &mut notes)?;
+        let problem = prepared.problem(&shape);
+        let solver = Box::new(match material {
+            Material::Arap => Gini::new::<Plane, _>(problem, Arap, *options),
+            Material::SymmetricDirichlet => {
+                Gini::new::<Plane, _>(problem, SymmetricDirichlet, *options)
+            }
+            Material::Dirichlet => Gini::new::<Plane, _>(problem, Dirichlet, *options),
+            _ => return Err(unknown_energy("triangles in a plane").into()),
+        }?);
+        Ok(Self {
+            solver: Body::Plane(solver),
+            notes,
+            setup_seconds: clock.seconds(),
+            level: start[0].z,
+        })
+    }
+
+    /// What is known of the newest positions.
+    pub fn outcome(&self) -> Outcome {
+        match &self.solver {
+            Body::Plane(solver) => solver.outcome(),
+            Body::Solid(solver) => solver.outcome(),
+        }
+    }
+
+    /// What was mended or chosen, in words.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The solver.
+    pub fn solver(&self) -> &dyn Solver {
+        match &self.solver {
+            Body::Plane(solver) => &**solver,
+            Body::Solid(solver) => &**solver,
+        }
+    }
+
+    /// The solver, to be stepped.
+    pub fn solver_mut(&mut self) -> &mut dyn Solver {
+        match &mut self.solver {
+            Body::Plane(solver) => &mut **solver,
+            Body::Solid(solver) => &mut **solver,
+        }
+    }
+
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// As [`Solver::step`].
+    pub fn step(&mut self) -> Result<StepReport, Error> {
+        Ok(self.solver_mut().step()?)
+    }
+
+    /// x, one position a vertex: the state that is handed out.
+    pub fn positions(&self) -> Vec<DVec3> {
+        self.in_space(self.solver().positions())
+    }
+
+    /// x̄ of the paper, the state of the primary solver: neither injective nor free of intersections.
+    pub fn primary_positions(&self) -> Vec<DVec3> {
+        match &self.solver {
+            Body::Plane(solver) => self.in_space(&solver.primary()),
+            Body::Solid(solver) => self.in_space(&solver.primary()),
+        }
+    }
+
+    fn in_space(&self, positions: &[f64]) -> Vec<DVec3> {
+        match self.solver {
+            Body::Plane(_) => {
+                let points = positions.as_chunks::<2>().0.iter();
+                points.map(|p| DVec3::new(p[0], p[1], self.level)).collect()
+            }
+            Body::Solid(_) => {
+                let points = positions.as_chunks::<3>().0.iter();
+                points.map(|&p| DVec3::from_array(p)).collect()
+            }
+        }
+    }
+
+    /// Seconds that building took.
+    pub fn setup_seconds(&self) -> f64 {
+        self.setup_seconds
+    }
+}
+
+fn unknown_energy(body: &str) -> BuildError {
+    BuildError::InvalidOption {
+        option: "energy",
+        what: format!("is not known for untangling {body}"),
+    }
+}
+
+/// Start, pins and springs as the solver wants them.
+struct Prepared {
+    start: Vec<f64>,
+    pins: Vec<u32>,
+    springs: Vec<crate::optim::Spring>,
+}
+
+impl Prepared {
+    fn new<const K: usize>(
+        rest: &SimplicialMesh<K>,
+        start: &[DVec3],
+        pins: &[u32],
+        targets: &[Target],
+        dimension: usize,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, BuildError> {
+        let supports = Supports::new(rest, pins, notes)?;
+        // relative stiffnesses: κ is the solver's option
+        let (moved, springs) = supports.split_free(targets, &vec![1.0; start.len()])?;
+        let mut positions = start.to_vec();
+        for (vertex, point) in moved {
+            positions[vertex as usize] = DVec3::from_array(point);
+        }
+        let points = positions.iter();
+        Ok(Self {
+            start: points
+                .flat_map(|p| p.to_array().into_iter().take(dimension))
+                .collect(),
+            pins: supports.held(),
+            springs,
+        })
+    }
+
+    fn problem<'a>(&'a self, shape: &'a RestShape) -> GiniProblem<'a> {
+        GiniProblem {
+            rest: shape,
+            start: &self.start,
+            pins: &self.pins,
+            springs: &self.springs,
+        }
+    }
+}

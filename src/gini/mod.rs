@@ -1,0 +1,43 @@
+//! GINI: injective maps by steps that need not be injective (Overby, Kaufman & Narain 2021, algorithm 1).
+//!
+//! Two states evolve together: x̄ of the primary solver, which may fold, and x, which is handed out. A step:
+//!
+//! 1. local step (5a), (5b) at x̄: ADMM with Z = F, on the element loops of `wrapd`;
+//! 2. global step: the quadratic problem (6) with the constraint set 𝒞 linearised at x̄, by L-BFGS-B on its
+//!    dual (10); an iteration is one solve with the factor of the Laplacian;
+//! 3. constraints whose multiplier is 0 leave 𝒞 (§6.2);
+//! 4. the polisher (§5): from x̂ = x̄ on, 𝒞 grows by every element below its least measure η, falls into zones that
+//!    share no vertex, and each zone takes a step of Levenberg and Marquardt's method (12), (13);
+//! 5. once all elements that are still inverted at x̂ are better than at x, x moves to x̂ (§5.1).
+//!
+//! It ends when no element is inverted or degenerate by exact predicates, or, with the best state, after 15 steps without
+//! a better one. Not in the paper: after the first, second, fourth, … step the primary solver takes some steps without
+//! constraints and begins anew. Constraints keep elements in place that have wound around an edge twice, where no
+//! polishing helps; without them less energy unwinds these.
+//!
+//! **η** is a tenth of an element's rest measure (less in proportion where pins leave less room than there is at rest),
+//! and falls by itself in the zones in which the polisher ends with inverted elements: those ask for more measure than
+//! there is. The report says how far it fell.
+//!
+//! Of the paper this has all that concerns elements. Constraints are about at most four vertices and know what they are
+//! about ([`Key`]), so that contacts can join them.
+
+mod admm;
+mod constraint;
+mod dual;
+mod elements;
+mod offsets;
+mod options;
+mod polisher;
+mod problem;
+mod set;
+mod simplex;
+mod solver;
+#[cfg(test)]
+mod tests;
+mod zones;
+
+pub use constraint::{Constraint, Key, Law};
+pub use options::GiniOptions;
+pub use problem::GiniProblem;
+pub use solver::{Gini, Outcome};

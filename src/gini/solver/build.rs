@@ -1,0 +1,159 @@
+//! What is done once.
+
+use super::{Best, Gini};
+use crate::energy::Energy;
+use crate::geometry::Elimination;
+use crate::gini::admm::{Admm, Body};
+use crate::gini::elements::Elements;
+use crate::gini::problem::{held_measure, not_positive};
+use crate::gini::set::ConstraintSet;
+use crate::gini::zones::Zones;
+use crate::gini::{GiniOptions, GiniProblem};
+use crate::optim::{BuildError, Criterion, Spring, Status, StepReport};
+use crate::parallel;
+use crate::space::Space;
+use crate::wrapd::External;
+use crate::wrapd::layout::element_order;
+
+/// The mean of these positions.
+pub fn centroid<const D: usize>(slots: &[u32], x: &[[f64; D]]) -> [f64; D] {
+    let mut sum = [0.0; D];
+    for &s in slots {
+        (0..D).for_each(|i| sum[i] += x[s as usize][i]);
+    }
+    sum.map(|s| s / slots.len() as f64)
+}
+
+impl<const D: usize> Gini<D> {
+    /// Checks the problem, analyses and factors the Laplacian, and looks at the start.
+    ///
+    /// # Errors
+    /// Lengths that do not fit, options out of range, a start that is not finite, pins that leave nothing free.
+    ///
+    /// # Panics
+    /// If the space does not have D dimensions.
+    pub fn new<S: Space, E: Energy<S>>(
+        problem: GiniProblem,
+        energy: E,
+        options: GiniOptions,
+    ) -> Result<Self, BuildError> {
+        assert!(
+            S::DIM == D && S::STRETCHES == D,
+            "a space of {D} dimensions"
+        );
+        parallel::in_pool(|| Self::build(problem, Body::new::<S, E>(energy), options))
+    }
+
+    fn build(problem: GiniProblem, body: Body, options: GiniOptions) -> Result<Self, BuildError> {
+        options.validate()?;
+        let spring = |s: &Spring| Spring {
+            stiffness: s.stiffness * options.target_stiffness,
+            ..*s
+        };
+        let external = External {
+            springs: problem.springs.iter().map(spring).collect(),
+            ..Default::default()
+        };
+        problem.validate(D, &external)?;
+        let n = problem.start.len() / D;
+        let mut used = vec![false; n];
+        for &v in &problem.rest.vertices {
+            used[v as usize] = true;
+        }
+        let floating = problem.floating(D);
+        let mut is_held: Vec<bool> = used.iter().map(|used| !used).collect();
+        problem
+            .pins
+            .iter()
+            .for_each(|&p| is_held[p as usize] = true);
+        // of a component that nothing holds one vertex stays where it is in the linear system
+        let mut fixed = is_held.clone();
+        floating.iter().for_each(|c| fixed[c[0] as usize] = true);
+        let fixed: Vec<u32> = (0..n as u32).filter(|&v| fixed[v as usize]).collect();
+        let elimination = Elimination::new(problem.rest, n, &fixed);
+        let slot = elimination.slot.clone();
+        let order = element_order(problem.rest, &slot);
+        let rest = problem.rest.reordered(&order);
+        let mut x = vec![[0.0; D]; n];
+        let mut movable = vec![true; n];
+        for (v, position) in problem.start.as_chunks::<D>().0.iter().enumerate() {
+            x[slot[v] as usize] = *position;
+            movable[slot[v] as usize] = !is_held[v];
+        }
+        let held: Vec<bool> = movable.iter().map(|m| !m).collect();
+        let image = held_measure::<D>(problem.rest, &is_held, problem.start);
+        let at_rest: f64 = rest.measure.iter().sum();
+        // where pins leave less room than there is at rest, every η is less from the beginning
+        let room = image.map_or(1.0, |(image, _)| (image / at_rest).clamp(1e-6, 1.0));
+        let first_offset = room * options.offset;
+        let elements = Elements::new(&rest, &slot, &held, first_offset);
+        let admm = Admm::new(
+            body,
+            &rest,
+            order.clone(),
+            &elimination,
+            problem.start,
+            &external,
+        )?;
+        let mut values = vec![0.0; elements.len()];
+        elements.values(&x, &mut values);
+        let mut set = ConstraintSet::new(elements.len());
+        set.add_elements(&elements, &values);
+        let floating = floating.into_iter().map(|component| {
+            let slots: Vec<u32> = component.iter().map(|&v| slot[v as usize]).collect();
+            let centroid = centroid(&slots, &x);
+            (slots, centroid)
+        });
+        let mut this = Self {
+            options,
+            admm,
+            order,
+            corners: problem.rest.vertices.clone(),
+            floating: floating.collect(),
+            set,
+            zones: Zones::new(n),
+            iterate: x.clone(),
+            trial: x.clone(),
+            trial_values: values.clone(),
+            step: vec![[0.0; D]; elimination.free],
+            best: Best {
+                inverted: usize::MAX,
+                smallest: f64::NEG_INFINITY,
+                x: x.clone(),
+            },
+            positions: problem.start.to_vec(),
+            hopeless: Vec::new(),
+            hopeless_measure: image.filter(|(image, error)| image <= error).map(|i| i.0),
+            first_offset,
+            begins_anew: true,
+            idle: 0,
+            report: StepReport::at_start(),
+            elements,
+            slot,
+            movable,
+            x,
+            values,
+        };
+        this.remember(this.count_inverted());
+        this.look();
+        this.judge();
+        Ok(this)
+    }
+
+    /// The status of the start: there already, or out of reach of any map with these pins.
+    fn judge(&mut self) {
+        let inverted = not_positive(D, &self.corners, &self.positions);
+        let mut is_movable = vec![true; self.order.len()];
+        for (place, &e) in self.order.iter().enumerate() {
+            is_movable[e as usize] = self.elements.movable[place];
+        }
+        let hopeless = inverted.iter().filter(|&&e| !is_movable[e as usize]);
+        self.hopeless = hopeless.copied().collect();
+        self.report.status = match () {
+            _ if inverted.is_empty() => Status::Converged(Criterion::Injective),
+            _ if !self.hopeless.is_empty() || self.hopeless_measure.is_some() => Status::Stalled,
+            _ if self.options.max_iterations == 0 => Status::MaxIterations,
+            () => Status::Running,
+        };
+    }
+}

@@ -1,0 +1,192 @@
+//! `foldfree untangle`.
+#![cfg(feature = "cli")]
+
+mod cli_support;
+mod random;
+
+use cli_support::Folder;
+use foldfree::mesh::io::{Format, read, write};
+use random::Random;
+
+/// The unit grid, the same with its inside shuffled, and its edges as pins.
+fn folder(name: &str) -> Folder {
+    let folder = Folder::new(name);
+    folder
+        .foldfree("generate grid --triangles 288 --out grid.obj")
+        .ends(0);
+    let mut mesh = read(&folder.read("grid.obj"), Format::Obj).unwrap().mesh;
+    let mut random = Random(2);
+    let mut pins = String::new();
+    for (v, p) in mesh.positions.iter_mut().enumerate() {
+        let (row, column) = (v / 13, v % 13);
+        if row % 12 == 0 || column % 12 == 0 {
+            pins += &format!("{v}\n");
+        } else {
+            (p.x, p.y) = (0.5 + 0.5 * random.next(), 0.5 + 0.5 * random.next());
+        }
+    }
+    folder.write("pins.txt", pins);
+    folder.write("start.obj", write(&mesh, Format::Obj));
+    folder
+}
+
+const UNTANGLE: &str = "untangle --rest grid.obj --init start.obj --pins pins.txt";
+
+#[test]
+fn a_shuffled_grid_is_untangled() {
+    let folder = folder("untangle-grid");
+    folder
+        .foldfree("check start.obj --rest grid.obj -q")
+        .ends(2);
+    folder
+        .foldfree(&format!("{UNTANGLE} --out out.obj --report r.json"))
+        .ends(0);
+    folder
+        .foldfree("check out.obj --rest grid.obj --global -q")
+        .ends(0);
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert_eq!(report["status"], "converged");
+    assert_eq!(report["criterion"], "injective");
+    assert_eq!(report["energy"], "arap");
+    assert_eq!(report["elements"], 288);
+    assert_eq!(report["pins"], 48);
+    assert_eq!(report["options"]["max_polish_iterations"], 30);
+    assert_eq!(
+        report["outcome"]["not_positive"].as_array().unwrap().len(),
+        0
+    );
+    assert!(report["outcome"]["smallest_measure"].as_f64().unwrap() > 0.0);
+    assert_eq!(report["certificate"]["globally_injective"], true);
+    let steps = report["iterations"].as_array().unwrap();
+    assert!(steps[0]["inverted"].as_u64().unwrap() > 50);
+    let last = steps.last().unwrap();
+    assert_eq!(last["inverted"], 0);
+    assert!(last["gini"]["first_offset"].as_f64().unwrap() > 0.0);
+    assert!(last["gini"]["polish"].is_array());
+    let out = read(&folder.read("out.obj"), Format::Obj).unwrap().mesh;
+    let grid = read(&folder.read("grid.obj"), Format::Obj).unwrap().mesh;
+    assert_eq!(out.positions[0], grid.positions[0], "pins stay");
+    assert_eq!(out.positions[168], grid.positions[168]);
+
+    // symmetric Dirichlet, and targets that pull
+    folder.write("targets.txt", "84 0.4 0.4\n");
+    folder
+        .foldfree(&format!(
+            "{UNTANGLE} --energy symmetric-dirichlet --targets targets.txt --out soft.obj -q"
+        ))
+        .ends(0);
+    folder.foldfree("check soft.obj --rest grid.obj -q").ends(0);
+    // held where the target says
+    folder
+        .foldfree(&format!(
+            "{UNTANGLE} --targets targets.txt --hard --out hard.obj -q"
+        ))
+        .ends(0);
+    let hard = read(&folder.read("hard.obj"), Format::Obj).unwrap().mesh;
+    assert_eq!(hard.positions[84].to_array(), [0.4, 0.4, 0.0]);
+    // without pins nothing is held, and it ends all the same
+    folder
+        .foldfree("untangle --rest grid.obj --init start.obj --out free.obj -q")
+        .ends(0);
+    folder.foldfree("check free.obj --rest grid.obj -q").ends(0);
+}
+
+#[test]
+fn a_solid_is_untangled_with_every_energy() {
+    let folder = Folder::new("untangle-solid");
+    folder
+        .foldfree("generate box --tetrahedra 600 --out box.mesh")
+        .ends(0);
+    let mut solid = foldfree::mesh::io::read_solid(&folder.read("box.mesh"), Format::Medit)
+        .unwrap()
+        .mesh;
+    let mut random = Random(8);
+    for p in &mut solid.positions {
+        *p += 0.3 * glam::DVec3::from_array(random.many());
+    }
+    let start = foldfree::mesh::io::write_solid(&solid, Format::Medit).unwrap();
+    folder.write("start.mesh", start);
+    folder
+        .foldfree("check start.mesh --rest box.mesh -q")
+        .ends(2);
+    for energy in [
+        "arap",
+        "neo-hookean",
+        "stable-neo-hookean",
+        "symmetric-dirichlet",
+    ] {
+        folder
+            .foldfree(&format!(
+                "untangle --rest box.mesh --init start.mesh --energy {energy} --out out.mesh -q"
+            ))
+            .ends(0);
+        folder.foldfree("check out.mesh --rest box.mesh -q").ends(0);
+    }
+}
+
+#[test]
+fn what_cannot_be_untangled_is_said() {
+    let folder = folder("untangle-hopeless");
+    // two corners of the square exchanged: the triangle of three pins at a corner is inverted
+    let pins: Vec<String> = (0..169)
+        .filter(|v| v / 13 % 12 == 0 || v % 13 % 12 == 0)
+        .map(|v| format!("{v}\n"))
+        .collect();
+    folder.write("pins.txt", pins.concat());
+    folder.write("targets.txt", "12 -0.5 0.5\n");
+    let ran = folder
+        .foldfree(&format!(
+            "{UNTANGLE} --targets targets.txt --hard --report r.json --out out.obj"
+        ))
+        .ends(2);
+    assert!(ran.stdout.contains("pinned"), "{ran:?}");
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert_eq!(report["status"], "stalled");
+    assert!(!report["outcome"]["hopeless"].as_array().unwrap().is_empty());
+    folder.read("out.obj");
+}
+
+#[test]
+fn bad_input_is_refused_in_one_line() {
+    let folder = folder("untangle-bad");
+    folder
+        .foldfree("untangle --rest grid.obj")
+        .fails(&["--init"]);
+    folder
+        .foldfree("untangle --rest grid.obj --init nowhere.obj")
+        .fails(&["nowhere.obj"]);
+    folder
+        .foldfree(&format!("{UNTANGLE} --energy st-venant-kirchhoff"))
+        .fails(&["st-venant-kirchhoff"]);
+    folder
+        .foldfree(&format!("{UNTANGLE} --energy neo-hookean"))
+        .fails(&["energy", "plane"]);
+    folder
+        .foldfree(&format!("{UNTANGLE} --target-stiffness 0"))
+        .fails(&["target-stiffness"]);
+    folder.write("bad.txt", "3\nfour\n");
+    folder
+        .foldfree("untangle --rest grid.obj --init start.obj --pins bad.txt")
+        .fails(&["bad.txt", "line 2"]);
+    folder.write("far.txt", "169\n");
+    folder
+        .foldfree("untangle --rest grid.obj --init start.obj --pins far.txt")
+        .fails(&["far.txt", "169"]);
+    let all: String = (0..169).map(|v| format!("{v}\n")).collect();
+    folder.write("all.txt", all);
+    folder
+        .foldfree("untangle --rest grid.obj --init start.obj --pins all.txt")
+        .fails(&["nothing to solve"]);
+    folder
+        .foldfree("generate sphere --triangles 100 --out sphere.obj")
+        .ends(0);
+    folder
+        .foldfree("untangle --rest sphere.obj --init sphere.obj")
+        .fails(&["plane"]);
+    folder
+        .foldfree("untangle --rest start.obj --init start.obj")
+        .fails(&["inverted"]);
+    folder
+        .foldfree("untangle --rest grid.obj --init sphere.obj")
+        .fails(&["sphere.obj", "vertices"]);
+}
