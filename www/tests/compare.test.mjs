@@ -48,7 +48,7 @@ describe('comparing', () => {
     assert.match((await status(page)).text, /(WRAPD\+CM|CM) is lowest|^iteration 11 · energy/);
     await page.fill('#history', '3');
     assert.match((await status(page)).text, /^iteration 3 of 11/);
-    assert.match(await page.textContent('#spoken'), /iteration 3 of 11, WRAPD\+CM is lowest, energy [\d.]+, 0 inverted in all maps/);
+    assert.match(await page.textContent('#spoken'), /iteration 3 of 11, (WRAPD\+CM|CM) is lowest, energy [\d.]+, 0 inverted in all maps/);
     assert.ok(await page.isHidden('#notice'));
   });
 
@@ -198,7 +198,7 @@ describe('for everybody', () => {
     await page.keyboard.press('Space');
     await page.waitForFunction(() => !globalThis.foldfreePage.mode.playing);
     await page.keyboard.press('m');
-    await page.waitForFunction(() => document.body.dataset.mode === 'flatten');
+    await page.waitForFunction(() => document.body.dataset.mode === 'round');
   });
 });
 

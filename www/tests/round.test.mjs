@@ -30,7 +30,11 @@ const state = (page) => page.evaluate(() => {
     above: Object.fromEntries([...session.results].map(([name, { energy, report }]) => [name, energy - report.relaxedEnergy])),
   };
 });
-const shownIs = (page, index) => page.waitForFunction((i) => globalThis.foldfreePage.shown === i, index);
+/** Waits until an iterate is shown, and drawn: that is with the next frame. */
+const shownIs = async (page, index) => {
+  await page.waitForFunction((i) => globalThis.foldfreePage.shown === i, index);
+  await page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); }));
+};
 const cells = (page, name) => page.$$eval('#round-table tr', (rows, cell) => rows.map((row) => row.querySelector(cell).textContent), name);
 
 describe('the session', () => {
@@ -114,14 +118,20 @@ describe('two integers', () => {
     for (let k = 1; k <= 12; k++) await page.mouse.move(x + 9 * k, y - 5 * k);
     await page.mouse.up();
     await page.waitForFunction(() => globalThis.foldfreePage.mode.wanted.x > 1);
+    // drawn when the worker has answered
+    let [there, away] = [];
+    for (let wait = 0; wait < 100 && !(away < 3); wait++) {
+      await page.waitForTimeout(50);
+      there = await page.locator('.picture .handle .halo').boundingBox();
+      away = Math.hypot(there.x - box.x - 108, there.y - box.y + 60);
+    }
+    assert.ok(away < 3, `the cross is under the pointer: ${away}`);
     const moved = await state(page);
-    const after = await page.locator('.picture .handle .halo').boundingBox();
-    assert.ok(Math.hypot(after.x - box.x - 108, after.y - box.y + 60) < 3, 'the cross is under the pointer');
     const expected = solved({ ...LATTICE, x: moved.minimum[0], y: moved.minimum[1] });
     for (const name of ROUNDINGS) assert.ok(Math.abs(moved.above[name] - expected[name].above) < 1e-9, name);
     assert.match(page.url(), /x=1\.\d+/);
     // far outside: it stays where it can be seen
-    await page.mouse.move(after.x + after.width / 2, after.y + after.height / 2);
+    await page.mouse.move(there.x + there.width / 2, there.y + there.height / 2);
     await page.mouse.down();
     await page.mouse.move(1190, 20);
     await page.mouse.up();
