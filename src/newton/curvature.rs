@@ -45,6 +45,10 @@ pub trait Curvature: Send + Sync {
     }
     /// Does `kept` make a difference?
     fn has_negative(&self) -> bool;
+    /// Is this for the energy that [`super::relaxation`] knows?
+    fn can_relax(&self) -> bool {
+        false
+    }
 }
 
 /// Numbers an element has in [`Curvature::fill`].

@@ -40,6 +40,10 @@ impl Curvature for CompositeMajorization {
         true
     }
 
+    fn can_relax(&self) -> bool {
+        true
+    }
+
     fn fill(&self, block: &Block, count: usize, kept: f64, out: &mut [f64]) {
         let share = Share {
             resistance: 1.0,

@@ -21,6 +21,9 @@ mod majorization;
 mod majorization_tests;
 mod options;
 mod pieces;
+mod relaxation;
+#[cfg(test)]
+mod relaxation_tests;
 mod solver;
 mod system;
 mod turns;

@@ -3,6 +3,7 @@
 mod attempts;
 mod curve;
 mod handles;
+mod mending;
 mod search;
 
 use self::attempts::{FIRST_PART, Tried};
@@ -10,6 +11,7 @@ use super::NewtonOptions;
 use super::curvature::{Curvature, OnCorners, Projected};
 use super::majorization::CompositeMajorization;
 use super::pieces::only_pins;
+use super::relaxation::Relaxation;
 use super::system::NewtonSystem;
 use super::turns::Turns;
 use crate::energy::{Energy, SymmetricDirichlet};
@@ -43,6 +45,8 @@ pub struct Newton {
     system: NewtonSystem,
     /// Where elements turn along a step.
     turns: Option<Turns>,
+    /// Vertices one by one, after steps cut short.
+    relaxation: Option<Relaxation>,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
     /// Of a plane that nothing else holds: the piece of each slot, and the only pins of those that have one.
@@ -175,6 +179,9 @@ impl Newton {
             true => Some(Turns::new(&problem, &elimination, &evaluation)?),
             false => None,
         };
+        let relaxes = turns.is_some() && evaluation.terms.is_none() && curvature.can_relax();
+        let relaxation = relaxes
+            .then(|| Relaxation::new(&evaluation.blocks, evaluation.elements(), elimination.free));
         let (piece, only_pins) = match planar && evaluation.terms.is_none() {
             true => only_pins(problem.rest, &elimination),
             false => Default::default(),
@@ -192,6 +199,7 @@ impl Newton {
             evaluation,
             system,
             turns,
+            relaxation,
             slot: elimination.slot,
             piece,
             only_pins,
@@ -322,6 +330,7 @@ impl Newton {
         let tolerance = self.options.tolerance;
         match found {
             Some(found) => {
+                let found = self.mend(found);
                 core::mem::swap(&mut self.x, &mut self.trial);
                 core::mem::swap(&mut self.gradient, &mut self.trial_gradient);
                 self.take(found.value);
