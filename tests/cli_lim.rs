@@ -35,6 +35,8 @@ fn a_grid_is_dragged_by_its_corner() {
     assert_eq!(report["triangles"], 288);
     assert_eq!(report["options"]["energy"], "dirichlet");
     assert_eq!(report["options"]["barrier"], true);
+    assert_eq!(report["certificate"]["inverted"], serde_json::json!([]));
+    assert_eq!(report["certificate"]["locally_injective"], true);
     let last = report["iterations"].as_array().unwrap().last().unwrap();
     assert_eq!(last["inverted"], 0);
     assert_eq!(last["lim"]["positional_error"], 0.0);

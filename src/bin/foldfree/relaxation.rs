@@ -3,7 +3,7 @@
 use crate::arguments::{names, positive, threads, tolerance};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::report::{self, DeformReport, Iteration};
+use crate::report::{self, BodyCertificate, DeformReport, Iteration};
 use crate::{Outcome, files, handles, say};
 use clap::Args;
 use foldfree::deformation::{Deformation, DeformationMethod, DeformationOptions, Target};
@@ -172,7 +172,7 @@ impl Relaxation {
             write(path, deformation.positions())?;
         }
         let clock = Stopwatch::start();
-        let certificate = deformation.certificate();
+        let certificate = BodyCertificate::of(&deformation);
         let certificate_seconds = clock.seconds();
         let last = deformation.solver().report().clone();
         if !self.quiet {

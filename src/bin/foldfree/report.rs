@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use foldfree::certificate::{Certificate, SolidCertificate};
+use foldfree::deformation::Deformation;
 use foldfree::optim::{GiniStep, LimStep, Phase, PhaseKind, Status, StepReport};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
@@ -102,6 +103,32 @@ impl From<&StepReport> for Iteration {
     }
 }
 
+/// What is known for certain of a deformed body.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub enum BodyCertificate {
+    /// Tetrahedra.
+    Solid(SolidCertificate),
+    /// Triangles in their plane.
+    Plane(Certificate),
+}
+
+impl BodyCertificate {
+    /// Of what has an inside: none of cloth.
+    pub fn of(body: &Deformation) -> Option<Self> {
+        let plane = || body.certificate_in_plane().map(Self::Plane);
+        body.certificate().map(Self::Solid).or_else(plane)
+    }
+
+    /// In words.
+    pub fn summary(&self) -> String {
+        match self {
+            Self::Solid(certificate) => certificate.summary(),
+            Self::Plane(certificate) => certificate.summary(),
+        }
+    }
+}
+
 /// The report of `deform` and of `cloth`, with their options.
 #[derive(Debug, Serialize)]
 pub struct DeformReport<O: Serialize> {
@@ -129,7 +156,7 @@ pub struct DeformReport<O: Serialize> {
     pub iterations: Vec<Iteration>,
     /// Of a solid.
     #[serde(serialize_with = "snake_keys", skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<SolidCertificate>,
+    pub certificate: Option<BodyCertificate>,
     pub certificate_seconds: f64,
 }
 
