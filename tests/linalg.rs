@@ -1,7 +1,7 @@
 //! Assembly, ordering and Cholesky against dense arithmetic and another library's factorisation.
 
 use foldfree::linalg::{Bisector, Cholesky, EliminationTree, Graph as Pattern};
-use foldfree::linalg::{NotPositiveDefinite, Order};
+use foldfree::linalg::{NotPositiveDefinite, Order, Supernodes};
 use foldfree::linalg::{SymmetricAssembly, WeightedSum};
 use nalgebra_sparse::factorization::CscCholesky;
 use nalgebra_sparse::na::{DMatrix, DVector};
@@ -244,10 +244,12 @@ fn the_solution_is_that_of_another_library() {
         let (order, place) = graph.order();
         let assembly = graph.assembled(&place);
         let mut factor = Cholesky::analyze(assembly.matrix(), &order.levels).unwrap();
+        let mut supernodes = Supernodes::analyze(assembly.matrix()).unwrap();
         // factoring again must not depend on what was there
         for round in 0..2 {
             factor.factorize(assembly.matrix()).unwrap();
-            assert_eq!(factor.dimension(), n);
+            supernodes.factorize(assembly.matrix()).unwrap();
+            assert_eq!((factor.dimension(), supernodes.dimension()), (n, n));
             let natural: Vec<u32> = (0..n as u32).collect();
             let oracle = CscCholesky::factor(&CscMatrix::from(&graph.coo(&natural))).unwrap();
             let mut random = Random(n as u64 + round);
@@ -260,9 +262,14 @@ fn the_solution_is_that_of_another_library() {
                         x[place[v] as usize * columns + c] = b[(v, c)];
                     }
                 }
-                factor.solve_in_place(&mut x, columns);
-                for v in 0..n {
-                    for c in 0..columns {
+                let mut solutions = vec![x.clone(), x];
+                factor.solve_in_place(&mut solutions[0], columns);
+                match columns {
+                    1 => supernodes.solve_in_place(&mut solutions[1]),
+                    _ => drop(solutions.pop()),
+                }
+                for x in solutions {
+                    for (v, c) in (0..n).flat_map(|v| (0..columns).map(move |c| (v, c))) {
                         let error = (x[place[v] as usize * columns + c] - expected[(v, c)]).abs();
                         // condition number at most about 8/0.1 · degree
                         assert!(error <= 1e-12 * expected.amax(), "{n}: {error:e}");
@@ -292,6 +299,10 @@ fn no_unknowns_and_one() {
     factor.factorize(nothing.matrix()).unwrap();
     factor.solve_in_place(&mut [], 2);
     assert_eq!((factor.dimension(), factor.factor_entries()), (0, 0));
+    let mut supernodes = Supernodes::analyze(nothing.matrix()).unwrap();
+    supernodes.factorize(nothing.matrix()).unwrap();
+    supernodes.solve_in_place(&mut []);
+    assert_eq!(supernodes.dimension(), 0);
 
     let mut one = SymmetricAssembly::new(1, [(0, 0)].into_iter());
     one.fill(|_| 4.0);
@@ -317,6 +328,8 @@ fn a_pivot_that_is_not_positive_is_named() {
                 matrix.values_mut()[diagonal] = value;
                 let mut factor = Cholesky::analyze(&matrix, &order.levels).unwrap();
                 let error = factor.factorize(&matrix);
+                assert_eq!(error, Err(NotPositiveDefinite { pivot: bad }), "{value}");
+                let error = Supernodes::analyze(&matrix).unwrap().factorize(&matrix);
                 assert_eq!(error, Err(NotPositiveDefinite { pivot: bad }), "{value}");
                 // and the next success is a success
                 factor.factorize(good.matrix()).unwrap();
@@ -457,10 +470,16 @@ fn residuals_are_small_whatever_the_weights() {
     let b: Vec<f64> = (0..graph.n).map(|_| random.signed()).collect();
     let mut x = b.clone();
     factor.solve_in_place(&mut x, 1);
-    let product = &a * DVector::from_vec(x.clone());
+    let mut supernodes = Supernodes::analyze(assembly.matrix()).unwrap();
+    supernodes.factorize(assembly.matrix()).unwrap();
+    let mut y = b.clone();
+    supernodes.solve_in_place(&mut y);
     let size = a.values().iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    let length = x.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    for (row, b) in product.iter().zip(&b) {
-        assert!((row - b).abs() <= 1e-13 * size * length, "{}", row - b);
+    for x in [x, y] {
+        let length = x.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let product = &a * DVector::from_vec(x);
+        for (row, b) in product.iter().zip(&b) {
+            assert!((row - b).abs() <= 1e-13 * size * length, "{}", row - b);
+        }
     }
 }

@@ -23,7 +23,7 @@ const NEAR: f64 = 1e-6;
 const SAMPLE: u64 = 10;
 
 /// Iterations of a run, and of what follows it to find out where it would have ended.
-const MOST: usize = 400;
+const MOST: usize = 1000;
 const MOST_AFTER: usize = 600;
 
 /// How a run ended.

@@ -5,6 +5,9 @@ use glam::DVec3;
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::FRAC_PI_4;
 
+/// Vertices come no nearer than this to their neighbours, for the size of a disk is about 1.
+const SHORTEST: f64 = 1e-7;
+
 /// SplitMix64 (Steele et al. 2014).
 pub struct Random(u64);
 
@@ -114,12 +117,14 @@ impl Patch {
         self.around[v].iter().map(length).sum::<f64>() / self.around[v].len().max(1) as f64
     }
 
-    /// Moves a vertex to one of its neighbours, up to a part of the way that is left.
+    /// Moves a vertex to one of its neighbours, up to a part of the way that is left, if that is more than rounding.
     pub fn approach(&mut self, v: usize, random: &mut Random, left: f64) {
         if let Some(&u) = self.around[v].get(random.below(self.around[v].len())) {
             let goal = self.mesh.positions[u as usize];
             let here = &mut self.mesh.positions[v];
-            *here = goal.lerp(*here, left);
+            if left * goal.distance(*here) > SHORTEST {
+                *here = goal.lerp(*here, left);
+            }
         }
     }
 

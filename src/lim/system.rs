@@ -3,7 +3,7 @@
 use super::constraints::Constraints;
 use super::objective::Objective;
 use crate::geometry::Elimination;
-use crate::linalg::{BlockSum, Cholesky};
+use crate::linalg::{BlockSum, Supernodes};
 use crate::newton::curvature::stride;
 use crate::optim::BuildError;
 
@@ -19,7 +19,7 @@ const LIMITS: [f64; 2] = [1e-5, 1e17];
 /// ∇² of the objective + μ I, and its factor.
 pub struct LimSystem {
     matrix: BlockSum,
-    factor: Cholesky,
+    factor: Supernodes,
     blocks: Vec<f64>,
     diagonal: Vec<f64>,
     /// The μ to begin with where one is needed.
@@ -46,12 +46,8 @@ impl LimSystem {
         let form = form.iter();
         let form = form.map(|&(a, b, k)| (slot[a as usize], slot[b as usize], k));
         let matrix = BlockSum::new(elimination.free, dimension, &pairs, form);
-        let ends = elimination.levels.iter();
-        let levels: Vec<Vec<usize>> = ends
-            .map(|ends| ends.iter().map(|end| dimension * end).collect())
-            .collect();
         Ok(Self {
-            factor: Cholesky::analyze(matrix.matrix(), &levels)?,
+            factor: Supernodes::analyze(matrix.matrix())?,
             matrix,
             blocks: vec![0.0; count * stride(dimension)],
             diagonal: vec![0.0; elimination.free],
@@ -128,6 +124,6 @@ impl LimSystem {
 
     /// Solves in place.
     pub fn solve(&mut self, x: &mut [f64]) {
-        self.factor.solve_in_place(x, 1);
+        self.factor.solve_in_place(x);
     }
 }

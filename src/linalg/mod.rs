@@ -8,12 +8,14 @@ mod elimination_tree;
 mod graph;
 mod order;
 mod panels;
+mod supernodes;
 mod triangular;
 
 pub use assembly::{SymmetricAssembly, WeightedSum};
 pub use blocks::BlockSum;
-pub use cholesky::{Cholesky, NotPositiveDefinite};
+pub use cholesky::Cholesky;
 pub use dissection::{Bisection, Bisector};
 pub use elimination_tree::EliminationTree;
 pub use graph::Graph;
 pub use order::Order;
+pub use supernodes::{NotPositiveDefinite, Supernodes};

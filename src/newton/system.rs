@@ -3,7 +3,7 @@
 use super::NewtonOptions;
 use super::curvature::{Curvature, Share, stride};
 use crate::geometry::{Elimination, RestShape};
-use crate::linalg::{BlockSum, Cholesky, NotPositiveDefinite};
+use crate::linalg::{BlockSum, NotPositiveDefinite, Supernodes};
 use crate::optim::BuildError;
 use crate::parallel;
 use crate::quasi_newton::evaluation::Evaluation;
@@ -19,7 +19,7 @@ const DECAY: f64 = 0.1;
 /// Σ A GᵀHG over the elements, terms beside them, a proximal term, and a shift that makes it definite.
 pub struct NewtonSystem {
     matrix: BlockSum,
-    factor: Cholesky,
+    factor: Supernodes,
     /// The elements' blocks, see [`Curvature::fill`].
     blocks: Vec<f64>,
     /// Mean diagonal entry of each vertex, without shift.
@@ -56,11 +56,6 @@ impl NewtonSystem {
         let couplings = external.map_or(&[][..], |e| &e.stiffness).iter();
         let couplings = couplings.map(|&(a, b, k)| (slot[a as usize], slot[b as usize], k));
         let matrix = BlockSum::new(elimination.free, d, &pairs, couplings);
-        let levels: Vec<Vec<usize>> = elimination
-            .levels
-            .iter()
-            .map(|ends| ends.iter().map(|end| d * end).collect())
-            .collect();
         let mut rest_diagonal = vec![0.0; elimination.free];
         let stiffness = evaluation.shape.constants.rest_stiffness;
         for e in 0..rest.len() {
@@ -77,7 +72,7 @@ impl NewtonSystem {
             .filter(|d| **d == 0.0)
             .for_each(|d| *d = mean);
         Ok(Self {
-            factor: Cholesky::analyze(matrix.matrix(), &levels)?,
+            factor: Supernodes::analyze(matrix.matrix())?,
             matrix,
             // written, so that the first step does not wait for its memory
             blocks: vec![1.0; evaluation.blocks.len() * BLOCK * stride(d)],
@@ -175,6 +170,6 @@ impl NewtonSystem {
 
     /// Solves in place: free vertices × dimension.
     pub fn solve(&mut self, x: &mut [f64]) {
-        self.factor.solve_in_place(x, 1);
+        self.factor.solve_in_place(x);
     }
 }

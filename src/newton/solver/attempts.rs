@@ -8,19 +8,19 @@ use crate::optim::{Phase, SolveError, Stopwatch};
 
 /// How much of what is negative in the elements' Hessians is tried in an iteration: a part, and less where the
 /// sum was not definite. That shows early in the factorisation, mostly, and costs little.
-const MOST_PARTS: u32 = 3;
+const MOST_PARTS: u32 = 2;
 
 /// The first, where the Hessian is first tried,
 pub(super) const FIRST_PART: f64 = 0.25;
 
 /// from one to the next,
-const PARTS_RATIO: f64 = 0.5;
+const PARTS_RATIO: f64 = 0.25;
 
 /// and, where the first was definite, for the next iteration.
 const PARTS_GROWTH: f64 = 4.0;
 
 /// The least part that is tried.
-const LEAST_PART: f64 = 0.1;
+const LEAST_PART: f64 = 0.05;
 
 /// Larger shifts tried where no step along a direction lowers the energy.
 const MOST_SHIFTS: u32 = 5;
