@@ -5,8 +5,8 @@ use glam::DVec3;
 use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::FRAC_PI_4;
 
-/// Vertices come no nearer than this to their neighbours, for the size of a disk is about 1.
-const SHORTEST: f64 = 1e-7;
+/// Less is no area: the size of a disk is about 1.
+const LEAST_AREA: f64 = 1e-12;
 
 /// SplitMix64 (Steele et al. 2014).
 pub struct Random(u64);
@@ -117,13 +117,17 @@ impl Patch {
         self.around[v].iter().map(length).sum::<f64>() / self.around[v].len().max(1) as f64
     }
 
-    /// Moves a vertex to one of its neighbours, up to a part of the way that is left, if that is more than rounding.
+    /// Moves a vertex to one of its neighbours, up to a part of the way that is left, unless a triangle would be
+    /// left without an area.
     pub fn approach(&mut self, v: usize, random: &mut Random, left: f64) {
         if let Some(&u) = self.around[v].get(random.below(self.around[v].len())) {
-            let goal = self.mesh.positions[u as usize];
-            let here = &mut self.mesh.positions[v];
-            if left * goal.distance(*here) > SHORTEST {
-                *here = goal.lerp(*here, left);
+            let before = self.mesh.positions[v];
+            self.mesh.positions[v] = self.mesh.positions[u as usize].lerp(before, left);
+            let at = |v: u32| self.mesh.positions[v as usize];
+            let area = |t: &[u32; 3]| (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])).length();
+            let mut triangles = self.mesh.simplices.iter();
+            if triangles.any(|t| t.contains(&(v as u32)) && area(t) < LEAST_AREA) {
+                self.mesh.positions[v] = before;
             }
         }
     }
