@@ -7,8 +7,9 @@ import * as deform from './foldfree-wasm/deform.mjs';
 import { Failure } from './foldfree-wasm/failure.mjs';
 import * as generate from './foldfree-wasm/generate.mjs';
 import * as parameterize from './foldfree-wasm/parameterize.mjs';
+import * as untangle from './foldfree-wasm/untangle.mjs';
 
-const COMMANDS = { parameterize, deform, check, generate };
+const COMMANDS = { parameterize, deform, untangle, check, generate };
 
 try {
   const [name, ...rest] = process.argv.slice(2);

@@ -3,9 +3,9 @@ import { flag, given, number, quiet, text, whole } from './arguments.mjs';
 import { core, program } from './core.mjs';
 import { Failure, told } from './failure.mjs';
 import { checkWritable } from './files.mjs';
-import { readPins, readTargets } from './handles.mjs';
+import { needTargets, readHandles } from './handles.mjs';
 import { iterationOf, sayer, timed, writeReport } from './report.mjs';
-import { checkSolidFormat, readPositions, readSolid, writeDeformed } from './solids.mjs';
+import { checkSolidFormat, positionsLike, readSolid, writeDeformed } from './solids.mjs';
 
 export const operands = 0;
 export const options = {
@@ -61,27 +61,6 @@ function reported({ energy, young, poisson, ...rest }) {
   return { material: ELASTIC.includes(energy) ? { energy, young, poisson } : { energy }, ...rest };
 }
 
-/** The vertices of another file of the same solid. */
-function positionsLike(path, vertices, whose) {
-  const positions = readPositions(path);
-  if (positions.length === 3 * vertices) return positions;
-  throw new Failure(`${path}: has ${positions.length / 3} vertices, ${whose} ${vertices}`);
-}
-
-/** Reads the handles of a solid of so many vertices. */
-function readHandles(values, vertices) {
-  const pins = values.pins === undefined ? [] : readPins(values.pins, vertices);
-  const targets = values.targets === undefined ? [] : readTargets(values.targets, vertices);
-  if (values.hard) pins.push(...targets.map((target) => target.vertex));
-  return {
-    pins: Uint32Array.from(pins),
-    targets: {
-      vertices: Uint32Array.from(targets, (target) => target.vertex),
-      positions: Float64Array.from(targets.flatMap((target) => target.position)),
-    },
-  };
-}
-
 function distance(a, b) {
   return Math.sqrt(a.reduce((sum, x, i) => sum + (x - b[i]) ** 2, 0));
 }
@@ -109,7 +88,7 @@ function solve(solver, { maxIterations }, reference) {
 export function run(_operand, values) {
   const { init, rest = init, out } = values;
   if (init === undefined) throw new Failure('--init is needed');
-  if (values.hard && values.targets === undefined) throw new Failure('--hard goes with --targets');
+  needTargets(values);
   const settings = settingsOf(values);
   if (out !== undefined) checkSolidFormat(out);
   checkWritable(out, values.report);

@@ -29,6 +29,25 @@ export function readTargets(path, vertices) {
   });
 }
 
+/** Fails for `--hard` without targets. */
+export function needTargets({ hard, targets }) {
+  if (hard && targets === undefined) throw new Failure('--hard goes with --targets');
+}
+
+/** Reads the handles of a body of so many vertices. */
+export function readHandles(values, vertices) {
+  const pins = values.pins === undefined ? [] : readPins(values.pins, vertices);
+  const targets = values.targets === undefined ? [] : readTargets(values.targets, vertices);
+  if (values.hard) pins.push(...targets.map((target) => target.vertex));
+  return {
+    pins: Uint32Array.from(pins),
+    targets: {
+      vertices: Uint32Array.from(targets, (target) => target.vertex),
+      positions: Float64Array.from(targets.flatMap((target) => target.position)),
+    },
+  };
+}
+
 function vertex(field, vertices, wrong) {
   const index = /^\+?\d+$/.test(field) ? Number(field) : NaN;
   if (!(index < 2 ** 32)) throw wrong(`expected a vertex index, found ${JSON.stringify(field)}`);

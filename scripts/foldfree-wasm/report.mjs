@@ -19,7 +19,7 @@ export function writeReport(path, report) {
 }
 
 /** One iteration of a report: a step without its arrays and without how the run ended. */
-export function iterationOf({ status, criterion, converged, positions, distortion, field, subTargets, ...iteration }) {
+export function iterationOf({ status, criterion, converged, positions, distortion, field, subTargets, primary, trace, ...iteration }) {
   return iteration;
 }
 

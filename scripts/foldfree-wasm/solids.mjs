@@ -1,7 +1,7 @@
 // Solids in and out: .node with its .ele beside it, or one file that holds both.
 import { existsSync } from 'node:fs';
 import { core } from './core.mjs';
-import { of } from './failure.mjs';
+import { Failure, of } from './failure.mjs';
 import { FORMATS, formatOf, readBytes, unknownFormat, write } from './files.mjs';
 
 /** Formats that hold tetrahedra in one file. */
@@ -43,6 +43,13 @@ export function readPositions(path) {
   if (!files) return readSolid(path).positions;
   const nodes = readBytes(files.node);
   return of(files.node, () => nodesAlone(nodes));
+}
+
+/** The vertices of another file of the same body; `read` reads them. */
+export function positionsLike(path, vertices, whose, read = readPositions) {
+  const positions = read(path);
+  if (positions.length === 3 * vertices) return positions;
+  throw new Failure(`${path}: has ${positions.length / 3} vertices, ${whose} ${vertices}`);
 }
 
 /**

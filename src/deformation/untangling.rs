@@ -4,13 +4,14 @@ use super::body::check;
 use super::injective::flat;
 use super::{Material, Supports, Target};
 use crate::Error;
+use crate::certificate::{Certificate, SolidCertificate};
 use crate::energy::{Arap, Dirichlet, NeoHookean, StableNeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
-use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome};
+use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, PolishState};
 use crate::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
 use crate::space::{Plane, Solid};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// An untangling in progress, of a solid or of triangles in a plane z = constant.
 pub struct Untangling {
@@ -19,6 +20,13 @@ pub struct Untangling {
     setup_seconds: f64,
     /// z, in the plane.
     level: f64,
+    rest: Rest,
+}
+
+/// What certificates compare with.
+enum Rest {
+    Plane(SurfaceMesh),
+    Solid(SolidMesh),
 }
 
 enum Body {
@@ -69,6 +77,7 @@ impl Untangling {
             notes,
             setup_seconds: clock.seconds(),
             level: 0.0,
+            rest: Rest::Solid(rest.clone()),
         })
     }
 
@@ -108,6 +117,11 @@ impl Untangling {
             notes,
             setup_seconds: clock.seconds(),
             level: start[0].z,
+            // as they were turned
+            rest: Rest::Plane(SurfaceMesh {
+                positions: rest.positions.clone(),
+                simplices: shape.vertices.as_chunks::<3>().0.to_vec(),
+            }),
         })
     }
 
@@ -159,6 +173,44 @@ impl Untangling {
             Body::Plane(solver) => self.in_space(&solver.primary()),
             Body::Solid(solver) => self.in_space(&solver.primary()),
         }
+    }
+
+    /// Keeps the polisher's states of every step from here on, or no more.
+    pub fn set_trace(&mut self, on: bool) {
+        match &mut self.solver {
+            Body::Plane(solver) => solver.set_trace(on),
+            Body::Solid(solver) => solver.set_trace(on),
+        }
+    }
+
+    /// x̂ of one of them, one position a vertex.
+    pub fn trace_positions(&self, state: &PolishState) -> Vec<DVec3> {
+        self.in_space(&state.positions)
+    }
+
+    /// The polisher's states in the newest step; see [`Gini::trace`].
+    pub fn trace(&self) -> &[PolishState] {
+        match &self.solver {
+            Body::Plane(solver) => solver.trace(),
+            Body::Solid(solver) => solver.trace(),
+        }
+    }
+
+    /// What is known for certain of x, as a map of a solid; `None` for triangles.
+    pub fn certificate(&self) -> Option<SolidCertificate> {
+        match &self.rest {
+            Rest::Solid(rest) => Some(SolidCertificate::of_solid(rest, &self.positions())),
+            Rest::Plane(_) => None,
+        }
+    }
+
+    /// The same of triangles in the plane; `None` for solids.
+    pub fn certificate_in_plane(&self) -> Option<Certificate> {
+        let Rest::Plane(rest) = &self.rest else {
+            return None;
+        };
+        let points: Vec<DVec2> = self.positions().iter().map(|p| p.truncate()).collect();
+        Some(Certificate::of_map(rest, &points))
     }
 
     fn in_space(&self, positions: &[f64]) -> Vec<DVec3> {

@@ -35,9 +35,11 @@ mod simplex;
 mod solver;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod zones;
 
 pub use constraint::{Constraint, Key, Law};
 pub use options::GiniOptions;
 pub use problem::GiniProblem;
 pub use solver::{Gini, Outcome};
+pub use trace::PolishState;

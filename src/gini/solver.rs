@@ -10,6 +10,7 @@ use super::elements::Elements;
 use super::polisher::polish;
 use super::problem::not_positive;
 use super::set::ConstraintSet;
+use super::trace::PolishState;
 use super::zones::Zones;
 use crate::optim::{
     Criterion, GiniStep, Inspection, Phase, PhaseKind, PolishStep, SolveError, Solver, Status,
@@ -19,6 +20,7 @@ use crate::parallel;
 
 /// How a run ended, or stands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 #[serde(rename_all = "camelCase")]
 pub struct Outcome {
     /// Elements of the positions that are inverted or degenerate, by exact predicates.
@@ -73,30 +75,32 @@ struct Best<const D: usize> {
 pub struct Gini<const D: usize> {
     options: GiniOptions,
     admm: Admm,
-    elements: Elements<D>,
+    pub(super) elements: Elements<D>,
     /// Element at each place.
-    order: Vec<u32>,
+    pub(super) order: Vec<u32>,
     /// Corners of the elements as they came.
     corners: Vec<u32>,
     /// Slot of each vertex.
-    slot: Vec<u32>,
+    pub(super) slot: Vec<u32>,
     /// By slot: may the polisher move it?
     movable: Vec<bool>,
     /// Components that nothing holds, by slot, and their centroids.
     floating: Vec<(Vec<u32>, [f64; D])>,
-    set: ConstraintSet,
-    zones: Zones,
+    pub(super) set: ConstraintSet,
+    pub(super) zones: Zones,
     /// x̄ of the paper, by slot,
     iterate: Vec<[f64; D]>,
     /// x,
     x: Vec<[f64; D]>,
     /// x̂.
-    trial: Vec<[f64; D]>,
+    pub(super) trial: Vec<[f64; D]>,
     /// c of every element at x and at x̂.
     values: Vec<f64>,
-    trial_values: Vec<f64>,
+    pub(super) trial_values: Vec<f64>,
     step: Vec<[f64; D]>,
     best: Best<D>,
+    /// The polisher's states of the newest step, where they are wanted.
+    pub(super) trace: Option<Vec<PolishState>>,
     positions: Vec<f64>,
     hopeless: Vec<u32>,
     hopeless_measure: Option<f64>,
@@ -225,6 +229,7 @@ impl<const D: usize> Gini<D> {
     /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1).
     fn polish(&mut self, step: &mut GiniStep) {
         self.trial.copy_from_slice(&self.iterate);
+        self.begin_trace();
         let (mut fewest, mut vain) = (usize::MAX, 0);
         for count in 0..=self.options.max_polish_iterations {
             self.elements.values(&self.trial, &mut self.trial_values);
@@ -234,6 +239,7 @@ impl<const D: usize> Gini<D> {
                 step.inverted_iterate = inverted;
             }
             self.remember(inverted);
+            self.trace_state(inverted, violated);
             let better = |(&new, &old): (&f64, &f64)| new > 0.0 || new > old;
             let values = self.trial_values.iter().zip(&self.values);
             let movable = self.elements.movable.iter();
@@ -256,6 +262,7 @@ impl<const D: usize> Gini<D> {
                 &self.movable,
                 &mut self.trial,
             );
+            self.trace_zones();
             step.polish.push(PolishStep {
                 inverted,
                 violated,
@@ -275,6 +282,7 @@ impl<const D: usize> Gini<D> {
     /// Reduces η in the zones where the polisher did not succeed.
     fn back_off(&mut self) {
         self.zones.build(&self.set.list, &self.movable);
+        self.trace_zones();
         let mut chosen = Vec::new();
         for z in 0..self.zones.len() {
             let members = self.zones.constraints(z).iter();

@@ -5,6 +5,7 @@ import { Core } from './engine.js';
 export { Core, CoreMesh, CoreSolver } from './engine.js';
 export { CoreMixedInteger } from './mixed-integer-engine.js';
 export { CoreDeformation, CoreSolid } from './solid-engine.js';
+export { CoreUntangling } from './untangle-engine.js';
 export { FoldfreeError } from './error.js';
 export type * from './types.js';
 

@@ -6,11 +6,12 @@ import { CoreDeformation, CoreSolid } from './solid-engine.js';
 import { guard } from './guard.js';
 import { CoreMixedInteger } from './mixed-integer-engine.js';
 import { needProblem } from './mixed-integer-input.js';
+import { CoreUntangling } from './untangle-engine.js';
 import {
   dispose,
   type Certificate, type DeformationSettings, type DeformOptions, type FramePrecision, type LimDeformOptions, type LimOptions, type MeshArrays, type MeshData, type MeshFormat, type MeshInfo,
   type MixedIntegerData, type MixedIntegerOptions, type MixedIntegerResult, type ParameterizeOptions, type Result, type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type SolverInfo,
-  type Step, type StepReport, type Texture,
+  type Step, type StepReport, type Texture, type UntangleOptions, type UntangleSettings,
 } from './types.js';
 
 /** The exports of one of the two wasm builds. */
@@ -42,6 +43,11 @@ export class CoreMesh implements MeshInfo {
 
   get triangleCount(): number {
     return this.indices.length / 3;
+  }
+
+  /** A file of the mesh with its vertices elsewhere (n × 3; left out: where they are). */
+  write(format: MeshFormat, positions: Float64Array = this.positions): Uint8Array {
+    return guard(() => this.handle.write(positions, format));
   }
 
   /** Gives its wasm memory back. */
@@ -231,6 +237,19 @@ export class Core {
     return CoreDeformation.make<SolidCertificate>(this.#bindings, { solid: body }, options);
   }
 
+  /**
+   * Checks rest shape, start and handles, and builds the solver that leads from any start to a map without inverted
+   * elements: of a solid, or of the triangles of a mesh in a plane z = constant.
+   */
+  untangle(body: CoreSolid, options?: UntangleOptions & { frames?: FramePrecision }): CoreUntangling;
+  untangle(body: CoreMesh, options?: UntangleOptions & { frames?: FramePrecision }): CoreUntangling<Certificate>;
+  untangle(
+    body: CoreSolid | CoreMesh, options: UntangleOptions & { frames?: FramePrecision } = {},
+  ): CoreUntangling | CoreUntangling<Certificate> {
+    if (body instanceof CoreMesh) return CoreUntangling.make<Certificate>(this.#bindings, { mesh: body }, options);
+    return CoreUntangling.make<SolidCertificate>(this.#bindings, { solid: body }, options);
+  }
+
   /** Checks a deformation that came from anywhere: `positions` is n × 3, interleaved; `solid` is the rest shape. */
   checkSolid(solid: CoreSolid, positions: Float64Array): SolidCertificate {
     return guard(() => this.#bindings.checkSolid(solid.handle, positions));
@@ -264,6 +283,11 @@ export class Core {
   /** The options of locally injective mappings with the values they have when left out. */
   defaultLimOptions(): LimOptions {
     return guard(() => this.#bindings.defaultLimOptions());
+  }
+
+  /** The options of untangling with the values they have when left out. */
+  defaultUntangleOptions(): UntangleSettings {
+    return guard(() => this.#bindings.defaultUntangleOptions());
   }
 
   /** All options with the values they have when left out. */

@@ -3,14 +3,16 @@ import { Client, type LoadOptions } from './client.js';
 import { FoldfreeError } from './error.js';
 import { cornerImages, fileBytes, isArrays, isSolidArrays, needFormat, needHandles, needSolidFormat } from './input.js';
 import { Mesh, Solid } from './mesh.js';
+import type { Calls } from './protocol.js';
 import { MixedInteger } from './mixed-integer.js';
 import { needProblem } from './mixed-integer-input.js';
-import { Deformation, Solver, abortable } from './solver.js';
+import { Deformation, Solver, abortable, type Wait } from './solver.js';
+import { Untangling } from './untangling.js';
 import {
   dispose,
-  type Certificate, type DeformOptions, type FramePrecision, type LimDeformOptions, type MeshData, type MeshFormat, type MixedIntegerData,
+  type Certificate, type DeformOptions, type FramePrecision, type Handles, type LimDeformOptions, type MeshData, type MeshFormat, type MixedIntegerData,
   type MixedIntegerOptions, type MixedIntegerResult, type ParameterizeOptions,
-  type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat,
+  type ShapeInfo, type SolidCertificate, type SolidData, type SolidFormat, type UntangleOptions,
 } from './types.js';
 
 export { FoldfreeError } from './error.js';
@@ -18,6 +20,7 @@ export type { FrameListener, LoadOptions } from './client.js';
 export { Mesh, Solid } from './mesh.js';
 export { MixedInteger } from './mixed-integer.js';
 export { Deformation, Solver } from './solver.js';
+export { Untangling } from './untangling.js';
 export type { RunOptions } from './solver.js';
 export type * from './types.js';
 
@@ -134,19 +137,39 @@ export class Foldfree {
   async deform(
     body: Solid | Mesh, options: (DeformOptions | LimDeformOptions) & CallOptions = {},
   ): Promise<Deformation | Deformation<Certificate>> {
+    const { signal, generation, solver, info, wait } = await this.#onBody('deform', body, options);
+    return new Deformation(this.#client, generation, solver, info, wait, signal) as Deformation | Deformation<Certificate>;
+  }
+
+  /**
+   * Checks rest shape, start and handles, and builds the solver that leads from any start to a map without inverted
+   * elements: of a solid, or of the triangles of a mesh in a plane z = constant. When it has converged nothing is
+   * inverted by exact predicates; where pins leave no room it ends with the best it has found, and says why.
+   */
+  untangle(body: Solid, options?: UntangleOptions & CallOptions): Promise<Untangling>;
+  untangle(body: Mesh, options?: UntangleOptions & CallOptions): Promise<Untangling<Certificate>>;
+  async untangle(body: Solid | Mesh, options: UntangleOptions & CallOptions = {}): Promise<Untangling | Untangling<Certificate>> {
+    const { signal, generation, solver, info, wait } = await this.#onBody('untangle', body, options);
+    return new Untangling(this.#client, generation, solver, info, wait, signal) as Untangling | Untangling<Certificate>;
+  }
+
+  /** Builds a solver with handles in the worker. */
+  async #onBody<K extends 'deform' | 'untangle'>(
+    call: K, body: Solid | Mesh, options: Calls[K][0]['options'] & CallOptions,
+  ): Promise<{ signal: AbortSignal | undefined; generation: number; solver: number; info: Calls[K][1]; wait: Wait }> {
     const { frames = 'f64', signal, terminateOnAbort = false, ...rest } = options;
-    needHandles(rest);
+    needHandles(rest as Handles);
     signal?.throwIfAborted();
     const client = this.#client;
     const wait = abortable(client, signal, terminateOnAbort);
     const solver = client.newId();
     const make = async () => {
-      const id = await body.inWorker();
+      const mesh = await body.inWorker();
       const { generation } = client;
-      return { generation, info: await client.call('deform', { mesh: id, solver, options: rest, frames }) };
+      const info: Calls[K][1] = await client.call(call, { mesh, solver, options: rest, frames } as Calls[K][0]);
+      return { generation, info };
     };
-    const { generation, info } = await wait(make());
-    return new Deformation(client, generation, solver, info, wait, signal) as Deformation | Deformation<Certificate>;
+    return { signal, solver, wait, ...await wait(make()) };
   }
 
   /**

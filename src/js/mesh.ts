@@ -68,6 +68,11 @@ export class Mesh extends InWorker implements MeshInfo {
     return this.indices.length / 3;
   }
 
+  /** A file of the mesh with its vertices elsewhere (n × 3; left out: where they are). */
+  async write(format: MeshFormat, positions?: Float64Array): Promise<Uint8Array> {
+    return this.client.call('write', { mesh: await this.inWorker(), format, positions });
+  }
+
   protected upload(mesh: number): Promise<unknown> {
     const { positions, indices } = this;
     return this.client.call('upload', { mesh, arrays: { positions, indices } });
@@ -103,7 +108,7 @@ export class Solid extends InWorker implements SolidInfo {
    * tetrahedra gets the boundary.
    */
   async write(format: MeshFormat, positions?: Float64Array): Promise<Uint8Array> {
-    return this.client.call('writeSolid', { mesh: await this.inWorker(), format, positions });
+    return this.client.call('write', { mesh: await this.inWorker(), format, positions });
   }
 
   protected upload(mesh: number): Promise<unknown> {

@@ -4,7 +4,7 @@ import type { MixedIntegerInput } from './mixed-integer-input.js';
 import type {
   Certificate, DeformInfo, DeformOptions, DeformResult, Field, Frame, FramePrecision, LimDeformOptions, MeshArrays, MeshFormat, MeshInfo, MixedIntegerChange,
   MixedIntegerInfo, MixedIntegerOptions, MixedIntegerReport, MixedIntegerResult, MixedIntegerStep, MixedIntegerStepReport, ParameterizeOptions, Result, ShapeInfo, SolidArrays,
-  SolidCertificate, SolidFormat, SolidInfo, SolverInfo, StepReport, Targets,
+  SolidCertificate, SolidFormat, SolidInfo, SolverInfo, StepReport, Targets, UntangleInfo, UntangleOptions, UntangleResult,
 } from './types.js';
 
 /** What is known of the library once it is loaded. */
@@ -35,13 +35,18 @@ export interface Calls {
   /** Keeps a solid given as arrays under `mesh`. */
   uploadSolid: [{ mesh: number; arrays: SolidArrays }, SolidInfo];
   generateSolid: [{ mesh: number; name: string; tetrahedra: number }, SolidInfo];
-  writeSolid: [{ mesh: number; format: MeshFormat; positions: Float64Array | undefined }, Uint8Array];
+  /** A file of a mesh or solid with its vertices elsewhere. */
+  write: [{ mesh: number; format: MeshFormat; positions: Float64Array | undefined }, Uint8Array];
   /** `mesh` is a solid, or a surface that lies in a plane. */
   deform: [{ mesh: number; solver: number; options: DeformOptions | LimDeformOptions; frames: FramePrecision }, DeformInfo];
   setTargets: [{ solver: number; targets: Targets }, undefined];
   setField: [{ solver: number; field: Field }, undefined];
   checkSolid: [{ mesh: number; positions: Float64Array }, SolidCertificate];
   deformed: [{ solver: number }, DeformResult<SolidCertificate | Certificate>];
+  /** `mesh` is a solid, or a surface that lies in a plane. */
+  untangle: [{ mesh: number; solver: number; options: UntangleOptions; frames: FramePrecision }, UntangleInfo];
+  primaryPositions: [{ solver: number }, Float64Array];
+  untangled: [{ solver: number }, UntangleResult<SolidCertificate | Certificate>];
   mixedInteger: [{ solver: number; input: MixedIntegerInput; options: Partial<MixedIntegerOptions> }, MixedIntegerInfo];
   resolve: [{ solver: number; change: MixedIntegerChange }, MixedIntegerStep];
   solved: [{ solver: number }, MixedIntegerResult];

@@ -14,6 +14,7 @@ export type {
 } from './single/foldfree.js';
 
 export type * from './mixed-integer-types.js';
+export type * from './untangle-types.js';
 
 /** What all methods say of a step. */
 export interface Progress {

@@ -4,7 +4,8 @@ import { FoldfreeError, toPlain } from './error.js';
 import { CoreMixedInteger } from './mixed-integer-engine.js';
 import type { AnyFrame, AnyReport, CallName, Calls, FromWorker, ToWorker } from './protocol.js';
 import { CoreDeformation, type CoreSolid } from './solid-engine.js';
-import type { Certificate, DeformInfo, DeformOptions, LimDeformOptions, MeshInfo, MixedIntegerInfo, SolidInfo, SolverInfo } from './types.js';
+import type { Certificate, DeformInfo, DeformOptions, LimDeformOptions, MeshInfo, MixedIntegerInfo, SolidInfo, SolverInfo, UntangleInfo } from './types.js';
+import { CoreUntangling } from './untangle-engine.js';
 
 interface Port {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
@@ -80,13 +81,14 @@ function transferables(value: unknown): Transferable[] {
 
 /** Calls whose answers stay here, too. */
 const KEPT: readonly CallName[] = [
-  'read', 'generate', 'parameterize', 'readSolid', 'uploadSolid', 'generateSolid', 'deform', 'mixedInteger',
+  'read', 'generate', 'parameterize', 'readSolid', 'uploadSolid', 'generateSolid', 'deform', 'untangle', 'mixedInteger',
 ];
 
 function serve(port: Port): void {
   let core: Core | undefined;
   const meshes = new Map<number, CoreMesh | CoreSolid>();
-  const solvers = new Map<number, CoreSolver | CoreDeformation | CoreDeformation<Certificate> | CoreMixedInteger>();
+  type Untangling = CoreUntangling | CoreUntangling<Certificate>;
+  const solvers = new Map<number, CoreSolver | CoreDeformation | CoreDeformation<Certificate> | Untangling | CoreMixedInteger>();
   const runs = new Map<number, Run>();
 
   const theCore = (): Core => {
@@ -117,6 +119,11 @@ function serve(port: Port): void {
     const solver = found(solvers, id, 'solver');
     if (solver instanceof CoreDeformation) return solver;
     throw new FoldfreeError('internal', 'this is no deformation');
+  };
+  const untangling = (id: number): Untangling => {
+    const solver = found(solvers, id, 'solver');
+    if (solver instanceof CoreUntangling) return solver;
+    throw new FoldfreeError('internal', 'this is no untangling');
   };
   const mixedInteger = (id: number): CoreMixedInteger => {
     const solver = found(solvers, id, 'solver');
@@ -172,7 +179,7 @@ function serve(port: Port): void {
     readSolid: ({ mesh, bytes, format, elements }) => keepSolid(mesh, theCore().solid(bytes, format, elements)),
     uploadSolid: ({ mesh, arrays }) => keepSolid(mesh, theCore().solid(arrays)),
     generateSolid: ({ mesh, name, tetrahedra }) => keepSolid(mesh, theCore().generateSolid(name, tetrahedra)),
-    writeSolid: ({ mesh, format, positions }) => solid(mesh).write(format, positions),
+    write: ({ mesh, format, positions }) => found(meshes, mesh, 'mesh').write(format, positions),
     deform({ mesh, solver, options, frames }): DeformInfo {
       const body = found(meshes, mesh, 'mesh');
       const made: CoreDeformation | CoreDeformation<Certificate> = body instanceof CoreMesh
@@ -186,6 +193,17 @@ function serve(port: Port): void {
     setField: ({ solver, field }) => void deformation(solver).setField(field),
     checkSolid: ({ mesh, positions }) => theCore().checkSolid(solid(mesh), positions),
     deformed: ({ solver }) => deformation(solver).result(),
+    untangle({ mesh, solver, options, frames }): UntangleInfo {
+      const body = found(meshes, mesh, 'mesh');
+      const made: Untangling = body instanceof CoreMesh
+        ? theCore().untangle(body, { ...options, frames })
+        : theCore().untangle(body, { ...options, frames });
+      solvers.set(solver, made);
+      const { start, notes, setupSeconds } = made;
+      return { start, notes, setupSeconds };
+    },
+    primaryPositions: ({ solver }) => untangling(solver).primaryPositions(),
+    untangled: ({ solver }) => untangling(solver).result(),
     mixedInteger({ solver, input, options }): MixedIntegerInfo {
       const made = theCore().mixedInteger('bytes' in input ? input.bytes : input.problem, options);
       solvers.set(solver, made);
@@ -235,7 +253,7 @@ function serve(port: Port): void {
     },
     weights({ solver: id }) {
       const solver = found(solvers, id, 'solver');
-      return solver instanceof CoreMixedInteger ? new Float32Array() : solver.weights();
+      return solver instanceof CoreMixedInteger || solver instanceof CoreUntangling ? new Float32Array() : solver.weights();
     },
     result: ({ solver }) => map(solver).result(),
     exportObj: ({ solver }) => map(solver).exportObj(),

@@ -1,7 +1,7 @@
 //! A deformation, step by step.
 
 use super::error::{Fallible, invalid_argument, invalid_option, thrown};
-use super::mesh::{WasmMesh, flat3, positions3};
+use super::mesh::{WasmMesh, flat3, positions3, single3};
 use super::options::{deformation_options, lim_options};
 use super::report::StepReport;
 use super::solid::WasmSolid;
@@ -97,9 +97,7 @@ impl WasmDeformation {
     /// The positions in single precision: half the bytes, enough to draw.
     #[wasm_bindgen(js_name = positionsSingle)]
     pub fn positions_single(&self) -> Float32Array {
-        let points = self.inner.positions();
-        let single: Vec<f32> = points.iter().flat_map(|p| p.as_vec3().to_array()).collect();
-        Float32Array::from(single.as_slice())
+        single3(&self.inner.positions())
     }
 
     /// The handles that locally injective mappings have not brought to their targets yet,
@@ -156,14 +154,15 @@ impl WasmDeformation {
 }
 
 /// The start, or else the rest shape.
-fn started(start: Option<Vec<f64>>, rest: &[DVec3]) -> Fallible<Vec<DVec3>> {
+pub(super) fn started(start: Option<Vec<f64>>, rest: &[DVec3]) -> Fallible<Vec<DVec3>> {
     match start {
         Some(start) => positions3(&start),
         None => Ok(rest.to_vec()),
     }
 }
 
-fn targets(vertices: &[u32], positions: &[f64]) -> Fallible<Vec<Target>> {
+/// Vertices and a point for each.
+pub(super) fn targets(vertices: &[u32], positions: &[f64]) -> Fallible<Vec<Target>> {
     let (points, rest) = positions.as_chunks::<3>();
     if !rest.is_empty() || points.len() != vertices.len() {
         let (found, expected) = (positions.len(), 3 * vertices.len());

@@ -5,7 +5,7 @@ use crate::mesh::generate::{self, Shape};
 use crate::mesh::io::{self, CornerTexture, Format};
 use crate::mesh::{MeshError, SurfaceMesh};
 use glam::{DVec2, DVec3};
-use js_sys::{Float64Array, Uint32Array};
+use js_sys::{Float32Array, Float64Array, Uint32Array};
 use serde::Serialize;
 use tsify::Tsify;
 use wasm_bindgen::prelude::*;
@@ -76,6 +76,18 @@ impl WasmMesh {
             texture: None,
             notes: Vec::new(),
         })
+    }
+
+    /// These triangles with their vertices elsewhere, n × 3, as a file of this format.
+    pub fn write(&self, positions: &[f64], format: &str) -> Fallible<Vec<u8>> {
+        let format = format_named(format)?;
+        let positions = positions_of(positions, self.mesh.positions.len())?;
+        let simplices = self.mesh.simplices.clone();
+        let mesh = SurfaceMesh {
+            positions,
+            simplices,
+        };
+        Ok(io::write(&mesh, format))
     }
 
     /// Positions, n × 3, interleaved (a copy).
@@ -155,9 +167,34 @@ pub(super) fn positions3(values: &[f64]) -> Fallible<Vec<DVec3>> {
     Ok(points.iter().copied().map(DVec3::from_array).collect())
 }
 
+/// The same, which have to be so many.
+pub(super) fn positions_of(values: &[f64], count: usize) -> Fallible<Vec<DVec3>> {
+    let positions = positions3(values)?;
+    if positions.len() != count {
+        let what = format!("{} points of {count}", positions.len());
+        return Err(invalid_argument("positions", &what));
+    }
+    Ok(positions)
+}
+
+/// A format that can be written, by its name.
+pub(super) fn format_named(name: &str) -> Fallible<Format> {
+    let format = Format::ALL.into_iter().find(|f| f.name() == name);
+    format.ok_or_else(|| {
+        let known = Format::ALL.map(Format::name).join(", ");
+        invalid_argument("format", &format!("\"{name}\": {known} are known"))
+    })
+}
+
 pub(super) fn flat3(points: &[DVec3]) -> Float64Array {
     let flat: Vec<f64> = points.iter().flat_map(|point| point.to_array()).collect();
     Float64Array::from(flat.as_slice())
+}
+
+/// Points in single precision.
+pub(super) fn single3(points: &[DVec3]) -> Float32Array {
+    let single: Vec<f32> = points.iter().flat_map(|p| p.as_vec3().to_array()).collect();
+    Float32Array::from(single.as_slice())
 }
 
 /// Points as interleaved coordinates.

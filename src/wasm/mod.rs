@@ -14,16 +14,18 @@ mod options;
 mod parameterization;
 mod report;
 mod solid;
+mod untangling;
 
 pub use deformation::WasmDeformation;
 pub use mesh::{WasmMesh, shapes};
 pub use mixed_integer::{WasmMixedInteger, WasmProblem};
 pub use options::{
     default_deformation_options, default_lim_options, default_mixed_integer_options,
-    default_options,
+    default_options, default_untangle_options,
 };
 pub use parameterization::{WasmParameterization, check_corners, check_map};
 pub use solid::{WasmSolid, check_solid, solid_shapes};
+pub use untangling::WasmUntangling;
 #[cfg(feature = "threads")]
 pub use wasm_bindgen_rayon::init_thread_pool;
 

@@ -2,6 +2,7 @@
 
 use super::error::{Fallible, invalid_option};
 use crate::deformation::{DeformationMethod, DeformationOptions, Material};
+use crate::gini::GiniOptions;
 use crate::lim::LimOptions;
 use crate::mixed_integer::MixedIntegerOptions;
 use crate::parameterization::ParameterizationOptions;
@@ -46,6 +47,72 @@ impl Default for DeformationSettings {
         }
     }
 }
+
+/// Options of untangling.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Tsify)]
+#[serde(rename_all = "camelCase", default)]
+pub struct UntangleSettings {
+    /// What is kept low on the way; the neo-Hookean ones are for solids.
+    #[tsify(type = "UntangleEnergy")]
+    pub energy: String,
+    /// Young's modulus, > 0, in any unit of pressure; of the energies that have one.
+    pub young: f64,
+    /// Poisson's ratio, below 0.5.
+    pub poisson: f64,
+    /// Most iterations of L-BFGS-B on the dual problem in one step.
+    pub max_qp_iterations: usize,
+    /// Most iterations of the polisher in one step.
+    pub max_polish_iterations: usize,
+    /// η, the least measure of an element in units of that at rest, before it is reduced where there is no room.
+    pub offset: f64,
+    /// How hard targets pull at free vertices, relative to how hard the body holds on to the one it holds on to most.
+    pub target_stiffness: f64,
+    /// Stop after this many steps.
+    pub max_iterations: usize,
+}
+
+impl Default for UntangleSettings {
+    fn default() -> Self {
+        let options = GiniOptions::default();
+        Self {
+            energy: "arap".into(),
+            young: Material::YOUNG,
+            poisson: Material::POISSON,
+            max_qp_iterations: options.max_qp_iterations,
+            max_polish_iterations: options.max_polish_iterations,
+            offset: options.offset,
+            target_stiffness: options.target_stiffness,
+            max_iterations: options.max_iterations,
+        }
+    }
+}
+
+/// `undefined` and `null` stand for the defaults.
+pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptions)> {
+    let settings: UntangleSettings = options(value)?;
+    let material = Material::named(&settings.energy, settings.young, settings.poisson);
+    let Some(material) = material.filter(|_| UNTANGLE_ENERGIES.contains(&&*settings.energy)) else {
+        let names = UNTANGLE_ENERGIES.join(", ");
+        return Err(invalid_option("energy", &format!("there are {names}")));
+    };
+    let options = GiniOptions {
+        max_qp_iterations: settings.max_qp_iterations,
+        max_polish_iterations: settings.max_polish_iterations,
+        offset: settings.offset,
+        target_stiffness: settings.target_stiffness,
+        max_iterations: settings.max_iterations,
+    };
+    Ok((material, options))
+}
+
+/// Energies that can be kept low while untangling.
+const UNTANGLE_ENERGIES: [&str; 5] = [
+    "arap",
+    "neo-hookean",
+    "stable-neo-hookean",
+    "symmetric-dirichlet",
+    "dirichlet",
+];
 
 /// `undefined` and `null` stand for the defaults.
 pub(super) fn parameterization_options(value: &JsValue) -> Fallible<ParameterizationOptions> {
@@ -152,6 +219,12 @@ pub fn default_lim_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&LimOptions::default()).map_err(JsValue::from)
 }
 
+/// The default options of untangling.
+#[wasm_bindgen(js_name = defaultUntangleOptions, unchecked_return_type = "UntangleSettings")]
+pub fn default_untangle_options() -> Fallible<JsValue> {
+    serde_wasm_bindgen::to_value(&UntangleSettings::default()).map_err(JsValue::from)
+}
+
 /// The default options of a mixed-integer problem.
 #[wasm_bindgen(js_name = defaultMixedIntegerOptions, unchecked_return_type = "MixedIntegerOptions")]
 pub fn default_mixed_integer_options() -> Fallible<JsValue> {
@@ -163,6 +236,9 @@ const MATERIAL_TYPE: &str = "
 /** An elastic energy. */
 export type Material =
   'neo-hookean' | 'stable-neo-hookean' | 'st-venant-kirchhoff' | 'arap' | 'symmetric-dirichlet' | 'dirichlet';
+
+/** An energy that can be kept low while untangling. */
+export type UntangleEnergy = 'arap' | 'neo-hookean' | 'stable-neo-hookean' | 'symmetric-dirichlet' | 'dirichlet';
 
 /** Options of locally injective mappings, chosen by `method: 'lim'`. */
 export type LimSettings = Partial<LimOptions> & { method?: 'lim' };

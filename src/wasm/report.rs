@@ -1,6 +1,6 @@
 //! A step's report as JavaScript sees it.
 
-use crate::optim::{self, Criterion, LimStep, Phase, Status};
+use crate::optim::{self, Criterion, GiniStep, LimStep, Phase, Status};
 use serde::Serialize;
 use tsify::Tsify;
 
@@ -43,6 +43,10 @@ pub struct StepReport<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[tsify(optional)]
     pub lim: Option<LimStep>,
+    /// Of a globally injective map: its quadratic problem, and its polisher.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[tsify(optional)]
+    pub gini: Option<&'a GiniStep>,
     /// Seconds since the first step began, setup apart.
     pub seconds: f64,
     /// What the step consisted of, in order.
@@ -69,6 +73,7 @@ impl<'a> From<&'a optim::StepReport> for StepReport<'a> {
             reweighted: report.reweighted,
             switched_at: report.switched_at.map(|k| k as u32),
             lim: report.lim,
+            gini: report.gini.as_ref(),
             seconds: report.seconds,
             phases: &report.phases,
         }

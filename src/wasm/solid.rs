@@ -1,7 +1,7 @@
 //! Tetrahedral meshes in and out.
 
 use super::error::{Fallible, invalid_argument, thrown};
-use super::mesh::{ShapeInfo, flat3, positions3};
+use super::mesh::{ShapeInfo, flat3, format_named, positions_of, positions3};
 use super::to_js;
 use crate::certificate::SolidCertificate;
 use crate::mesh::io::{self, Format};
@@ -73,22 +73,8 @@ impl WasmSolid {
     /// These tetrahedra with their vertices elsewhere, n × 3, as a file; a format of surfaces
     /// gets the boundary.
     pub fn write(&self, positions: &[f64], format: &str) -> Fallible<Vec<u8>> {
-        let Some(format) = Format::ALL.into_iter().find(|f| f.name() == format) else {
-            let known = Format::ALL.map(Format::name).join(", ");
-            return Err(invalid_argument(
-                "format",
-                &format!("\"{format}\": {known} are known"),
-            ));
-        };
-        let positions = positions3(positions)?;
-        if positions.len() != self.mesh.positions.len() {
-            let what = format!(
-                "{} points of {}",
-                positions.len(),
-                self.mesh.positions.len()
-            );
-            return Err(invalid_argument("positions", &what));
-        }
+        let format = format_named(format)?;
+        let positions = positions_of(positions, self.mesh.positions.len())?;
         let solid = SolidMesh {
             positions,
             simplices: self.mesh.simplices.clone(),

@@ -257,3 +257,93 @@ describe('the command line on solids', () => {
     }
   });
 });
+
+describe('the command line untangles', () => {
+  const n = 13;
+  /** The unit grid with these vertices. */
+  const grid = (points) => {
+    const lines = points.map((point) => `v ${point.join(' ')}`);
+    for (let j = 0; j + 1 < n; j += 1) {
+      for (let i = 1; i < n; i += 1) {
+        const a = j * n + i;
+        lines.push(`f ${a} ${a + 1} ${a + n + 1}`, `f ${a} ${a + n + 1} ${a + n}`);
+      }
+    }
+    return `${lines.join('\n')}\n`;
+  };
+  const rest = Array.from({ length: n * n }, (_, v) => [(v % n) / (n - 1), Math.floor(v / n) / (n - 1), 0]);
+  const isRim = (v) => v % n === 0 || v % n === n - 1 || v < n || v >= n * n - n;
+  const rim = rest.map((_, v) => v).filter(isRim);
+
+  before(() => {
+    let state = 3;
+    const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32;
+    writeFileSync(file('grid.obj'), grid(rest));
+    writeFileSync(file('tangled.obj'), grid(rest.map((point, v) => (isRim(v) ? point : [random(), random(), 0]))));
+    writeFileSync(file('rim.txt'), handleFile(rim));
+  });
+
+  it('triangles in a plane, with a report as the native program writes it', () => {
+    const common = ['untangle', '--rest', file('grid.obj'), '--init', file('tangled.obj'), '--pins', file('rim.txt')];
+    assert.equal(foldfree('check', file('tangled.obj'), '--rest', file('grid.obj'), '-q').status, 2);
+    const ran = foldfree(...common, '--out', file('free.obj.gz'), '--report', file('u.json'), '--quiet');
+    assert.equal(ran.status, 0, ran.stderr);
+    assert.equal(ran.stderr, '');
+    assert.equal(foldfree('check', file('free.obj.gz'), '--rest', file('grid.obj'), '--global', '-q').status, 0);
+    const report = json('u.json');
+    assert.deepEqual(Object.keys(report), [
+      'program', 'rest', 'init', 'status', 'criterion', 'energy', 'options', 'threads', 'vertices', 'elements', 'pins', 'targets',
+      'notes', 'setup_seconds', 'seconds', 'iterations', 'outcome', 'certificate', 'certificate_seconds', 'memory_bytes',
+    ]);
+    assert.deepEqual([report.status, report.criterion, report.energy], ['converged', 'injective', 'arap']);
+    assert.deepEqual([report.elements, report.pins, report.targets], [2 * (n - 1) ** 2, rim.length, 0]);
+    assert.deepEqual(Object.keys(report.options).sort(), ['max_iterations', 'max_polish_iterations', 'max_qp_iterations', 'offset', 'target_stiffness']);
+    assert.deepEqual(report.outcome.not_positive, []);
+    assert.ok(report.outcome.smallest_measure > 0 && report.iterations[0].inverted > 50);
+    assert.equal(report.certificate.globally_injective, true);
+    const last = report.iterations.at(-1);
+    assert.ok(last.inverted === 0 && last.gini.first_offset > 0 && Array.isArray(last.gini.polish));
+    // a corner is taken elsewhere
+    writeFileSync(file('corner.txt'), `${n * n - 1} 1.4 1.3\n`);
+    assert.equal(foldfree(...common, '--targets', file('corner.txt'), '--hard', '--energy', 'symmetric-dirichlet', '--out', file('free.off')).status, 0);
+    assert.match(readFileSync(file('free.off'), 'utf8'), /^1\.4 1\.3 0$/m);
+  });
+
+  it('solids', () => {
+    assert.equal(foldfree('generate', 'box', '--tetrahedra', '500', '--out', file('box.node')).status, 0);
+    let state = 8;
+    const random = () => (state = (Math.imul(state, 1664525) + 1013904223) >>> 0) / 2 ** 32 - 0.5;
+    writeFileSync(file('shaken.node'), nodeFile(nodes('box.node').map((point) => point.map((x) => x + 0.5 * random()))));
+    const common = ['untangle', '--rest', file('box.node'), '--init', file('shaken.node'), '--report', file('u.json')];
+    assert.equal(foldfree('check', file('shaken.node'), '--rest', file('box.node')).status, 2);
+    const ran = foldfree(...common, '--energy', 'neo-hookean', '--young', '2', '--out', file('calm.node'));
+    assert.equal(ran.status, 0, ran.stderr);
+    assert.match(ran.stderr, /converged after \d+ steps.*0 inverted or degenerate/);
+    assert.equal(json('u.json').energy, 'neo-hookean');
+    assert.equal(foldfree('check', file('calm.node'), '--rest', file('box.node')).status, 0);
+    assert.equal(foldfree(...common, '--iterations', '0').status, 2);
+    assert.deepEqual([json('u.json').status, json('u.json').iterations.length], ['max-iterations', 1]);
+  });
+
+  it('says what cannot be, and what is wrong', () => {
+    writeFileSync(file('turned.obj'), grid(rest.map(([x, y, z]) => [1 - x, y, z])));
+    const ran = foldfree('untangle', '--rest', file('grid.obj'), '--init', file('turned.obj'), '--pins', file('rim.txt'));
+    assert.equal(ran.status, 2, ran.stderr);
+    assert.match(ran.stderr, /pinned boundary encloses/);
+    for (const [words, ...args] of [
+      [/--init is needed/, '--rest', file('grid.obj')],
+      [/--hard goes with --targets/, '--init', file('grid.obj'), '--hard'],
+      [/energy/, '--init', file('grid.obj'), '--energy', 'neo-hookean'],
+      [/energy.*arap/, '--init', file('grid.obj'), '--energy', 'rubber'],
+      [/a\.node: the format is not known/, '--init', file('grid.obj'), '--out', file('a.node')],
+      [/box\.node: the format is not known/, '--rest', file('grid.obj'), '--init', file('box.node')],
+      [/rim\.txt: line 6: vertex \d+ of 3/, '--init', file('one.obj'), '--pins', file('rim.txt')],
+    ]) {
+      writeFileSync(file('one.obj'), 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n');
+      const { status, stderr } = foldfree('untangle', ...args);
+      assert.equal(status, 1, `${args}: ${stderr}`);
+      assert.match(stderr, words);
+      assert.equal(stderr.trim().split('\n').length, 1, stderr);
+    }
+  });
+});

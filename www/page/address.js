@@ -3,9 +3,10 @@ import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
 import { isFigure } from './figures.js';
 import { LIM_ENERGIES, MATERIALS } from './materials.js';
 import { WINDOW } from './round-problems.js';
+import { ENERGIES, HELD, STARTS } from './untangle-problems.js';
 
 /** The modes, the first of which the page opens on. */
-export const MODES = ['flatten', 'deform', 'compare', 'round'];
+export const MODES = ['flatten', 'deform', 'untangle', 'compare', 'round'];
 
 /** What each mode opens on. */
 export const DEFAULTS = Object.freeze({
@@ -15,6 +16,9 @@ export const DEFAULTS = Object.freeze({
   deform: Object.freeze({
     solid: 'bar', tetrahedra: 3000, preset: 'random', method: 'wrapd', material: 'neo-hookean', young: 1e6, poisson: 0.3,
     energy: 'arap', barrier: 'on', hessian: 'projected', field: 'stretch', cut: 'z', at: 0.5,
+  }),
+  untangle: Object.freeze({
+    body: 'bar', size: 3000, held: 'twisted', start: 'random', energy: 'arap', state: 'trial', field: 'zone', cut: 'z', at: 0.5,
   }),
   compare: Object.freeze({
     sample: 'bumpy-cap', triangles: 4000, start: 'tutte', energy: 'symmetric-dirichlet', clock: 'iterations',
@@ -41,6 +45,14 @@ const CHOICES = {
     field: ['stretch', 'volume', 'stress'],
     cut: ['none', 'x', 'y', 'z'],
   },
+  untangle: {
+    held: Object.keys(HELD),
+    start: Object.keys(STARTS),
+    energy: Object.keys(ENERGIES),
+    state: ['trial', 'result', 'primary'],
+    field: ['stretch', 'volume', 'zone'],
+    cut: ['none', 'x', 'y', 'z'],
+  },
   compare: {
     start: ['automatic', 'harmonic', 'tutte', 'lscm', 'random', 'collapsed'],
     energy: ['symmetric-dirichlet', 'arap'],
@@ -53,7 +65,7 @@ const CHOICES = {
   },
 };
 
-const NAMES = { flatten: ['sample'], deform: ['solid'], compare: ['sample'], round: [] };
+const NAMES = { flatten: ['sample'], deform: ['solid'], untangle: ['body'], compare: ['sample'], round: [] };
 const RANGES = {
   round: {
     condition: [1, 100, false], turn: [-90, 90, true], x: [WINDOW.left + WINDOW.margin, WINDOW.right - WINDOW.margin, false],
@@ -61,6 +73,7 @@ const RANGES = {
   },
   flatten: { triangles: [2, 1e6, true] },
   compare: { triangles: [2, 1e6, true] },
+  untangle: { size: [2, 1e6, true], at: [0, 1, false] },
   deform: { tetrahedra: [2, 1e6, true], young: [1e-6, 1e15, false], poisson: [-0.99, 0.499, false], at: [0, 1, false] },
 };
 
@@ -110,6 +123,7 @@ export function readAddress(mode = modeOf(), search = location.search) {
     state.method = 'lim';
     if (!['held', 'drag'].includes(state.preset)) state.preset = 'drag';
   }
+  if (mode === 'untangle' && isFigure(state.body) && !ENERGIES[state.energy].planar) state.energy = 'arap';
   const steps = Number(asked.get(STEPS[mode]));
   if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);
   return state;
@@ -119,7 +133,7 @@ export function readAddress(mode = modeOf(), search = location.search) {
 export const MOST_STEPS = 5000;
 
 /** How the address says how many steps to make. */
-const STEPS = { flatten: 'at', deform: 'steps', compare: 'at', round: 'steps' };
+const STEPS = { flatten: 'at', deform: 'steps', untangle: 'steps', compare: 'at', round: 'steps' };
 
 /** Writes the state of `mode` into the address, defaults left out, and everything of other modes. */
 export function writeAddress(mode, state) {
@@ -141,6 +155,6 @@ export function writeAddress(mode, state) {
 
 /** Whether a problem is the one that `mode` opens on; how it is looked at does not count. */
 export function isDefault(mode, state) {
-  const looks = ['field', 'cut', 'at'];
+  const looks = ['field', 'cut', 'at', 'state'];
   return Object.entries(DEFAULTS[mode]).every(([key, value]) => looks.includes(key) || state[key] === value);
 }

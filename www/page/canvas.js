@@ -103,6 +103,19 @@ class BenchBoard {
     this.handle.pushSolid(numbers(step), phases(step), single(step.positions), field ?? new Float32Array());
   }
 
+  /** A part of a step of an untangling, with the three states and the zone of every element of the first. */
+  pushMoment(step) {
+    const zones = step.zoneOf ? Float32Array.from(step.zoneOf) : new Float32Array();
+    this.handle.pushMoment(
+      Float64Array.of(...numbers(step), ...moment(step)), phases(step), single(step.trial), zones, single(step.result), single(step.primary),
+    );
+  }
+
+  /** Which state of an untangling is shown. */
+  state(name) { this.handle.setState(name); }
+  /** Looks at where these positions (n×3) are. */
+  lookAt(positions) { this.handle.lookAt(Float64Array.from(positions)); }
+
   /** An iterate of which only the numbers have come. */
   pushNumbers(step) {
     this.handle.pushNumbers(numbers(step), phases(step));
@@ -169,6 +182,19 @@ const numbers = (step) => Float64Array.of(
 
 /** What a step of a locally injective mapping was made with. */
 const parameters = (lim) => (lim ? [lim.alpha, lim.mu, lim.sigma, lim.positionalError, lim.barrier, lim.arrived, lim.handles] : []);
+
+const PARTS = ['start', 'local', 'quadratic', 'polish', 'outcome'];
+
+/** Which part of which step of an untangling this is, and what is wrong then. */
+function moment({ part, k, of, counts, violated = -1, zones, gini }) {
+  const {
+    qpIterations = 0, constraints = 0, active = 0, accepted = false, leastOffset = 0, firstOffset = 0, reducedOffsets = 0, smallestMeasure = NaN,
+  } = gini ?? {};
+  return [
+    PARTS.indexOf(part), k, of, ...counts, violated, zones, qpIterations, constraints, active, accepted ? 1 : 0, leastOffset, firstOffset,
+    reducedOffsets, smallestMeasure,
+  ];
+}
 
 const phases = (step) => Float64Array.from(
   (step.phases ?? []).flatMap(({ kind, count, milliseconds }) => [PHASES.indexOf(kind), count, milliseconds]),

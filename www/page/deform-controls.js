@@ -2,6 +2,7 @@
 import { MATERIALS, isElastic } from './materials.js';
 import { FIGURES } from './figures.js';
 import { PRESETS, presetsOf } from './presets.js';
+import { reflectSight } from './sight.js';
 import { number, whole } from './words.js';
 
 const $ = (id) => document.getElementById(id);
@@ -52,11 +53,6 @@ export class DeformControls {
       button.addEventListener('click', () => mode.preset(name));
       $('presets').append(button);
     }
-    $('field').addEventListener('change', () => mode.look('field', $('field').value));
-    $('cut').addEventListener('change', () => mode.look('cut', $('cut').value));
-    const at = () => Number($('cut-at').value) / 100;
-    $('cut-at').addEventListener('input', () => mode.look('at', at(), { moving: true }));
-    $('cut-at').addEventListener('change', () => mode.look('at', at()));
     $('pin-box').addEventListener('click', () => this.toggleBox());
     $('release').addEventListener('click', () => mode.release());
     for (const [id, times] of [['turn-back', -1], ['turn-on', 1]]) $(id).addEventListener('click', () => mode.hands.twist(times));
@@ -126,13 +122,8 @@ export class DeformControls {
 
   /** Shows how the solid is looked at. */
   look() {
-    const { wanted, bench } = this.#mode;
-    $('field').value = wanted.field;
-    $('cut').value = wanted.cut;
-    $('cut-at').value = String(Math.round(100 * wanted.at));
-    $('cut').disabled = Boolean(this.#mode.figure);
-    $('cut-at').disabled = wanted.cut === 'none' || Boolean(this.#mode.figure);
-    $('cut-at').setAttribute('aria-valuetext', `${Math.round(100 * wanted.at)} % along ${wanted.cut}`);
+    const { wanted, bench, active, figure } = this.#mode;
+    if (active) reflectSight(wanted, Boolean(figure));
     bench?.boxTool(this.#box);
   }
 }

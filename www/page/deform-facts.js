@@ -13,14 +13,16 @@ export function factsOf(session, { title, threads }) {
     ...problem.notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
   ];
   if (session.finished && newest.iteration > 0) pairs.push(['ended', `${ending(newest)} after ${newest.iteration}`]);
-  if (certificate && session.planar) {
-    const wrong = certificate.inverted.length + certificate.degenerate.length;
-    pairs.push(['certificate', wrong === 0 ? 'no triangle inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
-    if (wrong === 0) pairs.push(['', certificate.globallyInjective ? 'injective as a whole (exact)' : 'parts of it lie on each other (exact)']);
-  } else if (certificate) {
-    const wrong = certificate.inverted.length + certificate.degenerate.length;
-    pairs.push(['certificate', wrong === 0 ? 'no tetrahedron inverted (exact)' : `${whole(wrong)} inverted (exact)`]);
-    if (wrong === 0) pairs.push(['', certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)']);
-  }
+  if (certificate) pairs.push(...proofOf(certificate, session.planar));
   return pairs;
+}
+
+/** What a certificate says, of triangles in a plane or of tetrahedra. */
+export function proofOf(certificate, planar) {
+  const wrong = certificate.inverted.length + certificate.degenerate.length;
+  if (wrong > 0) return [['certificate', `${whole(wrong)} inverted (exact)`]];
+  const verdict = planar
+    ? (certificate.globallyInjective ? 'injective as a whole (exact)' : 'parts of it lie on each other (exact)')
+    : (certificate.locallyInjective ? 'injective around every vertex (exact)' : 'it overlaps around an edge or a vertex (exact)');
+  return [['certificate', `no ${planar ? 'triangle' : 'tetrahedron'} inverted (exact)`], ['', verdict]];
 }

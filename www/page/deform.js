@@ -16,6 +16,7 @@ import { describe } from './notice.js';
 import { PRESETS, collapsed, presetsOf, scattered, scene } from './presets.js';
 import { Rate } from './rate.js';
 import { relativeTo, volumeOf } from './relative.js';
+import { drawSight } from './sight.js';
 import { METHODS, whole } from './words.js';
 
 /** Presets that spoil what they are given. */
@@ -325,6 +326,11 @@ export class Deform extends Mode {
     super.leave();
   }
 
+  enter() {
+    super.enter();
+    this.reflect(); // colours and cut are shared with other modes
+  }
+
   async play() {
     if (this.mayHold && !this.playing && this.handles.groups.length === 0) return this.#tellNothingIsHeld();
     await super.play();
@@ -419,9 +425,7 @@ export class Deform extends Mode {
   }
 
   #look() {
-    const { field, cut, at } = this.wanted;
-    this.bench.field(field);
-    this.bench.cut('xyz'.indexOf(cut), at);
+    drawSight(this.bench, this.wanted);
     this.controls.look();
   }
 

@@ -34,6 +34,37 @@ export async function readSolidFiles(files) {
   return first.format === 'node' ? { ...first, elements: elements.bytes } : first;
 }
 
+/** A name that says of a file that it is where something starts. */
+const STARTS = /init|start|tangled|folded/i;
+
+/**
+ * Reads what is to be untangled: `{ name, files, pins }`. One body at rest, and perhaps a second file of the same body as
+ * it starts (the one whose name says so, else the second), and a text file of vertices to hold.
+ */
+export async function readUntangleFiles(files) {
+  const lists = files.filter(({ name }) => /\.txt(\.gz)?$/i.test(name));
+  const bodies = files.filter((file) => !lists.includes(file));
+  if (bodies.length === 0) throw new Error('a list of pins needs its body: open both together');
+  if (lists.length > 1) throw new Error('there are two lists of pins');
+  const formats = ['mesh', 'msh', 'vtk', 'node', 'ele', 'obj', 'off', 'ply', 'stl'];
+  const kinds = 'MESH, MSH, VTK, NODE with ELE, OBJ, OFF, PLY and STL';
+  const read = await Promise.all(bodies.map(async (file) => ({ name: file.name, ...(await unpacked(file, formats, kinds)) })));
+  const elements = read.filter(({ format }) => format === 'ele');
+  const found = read.filter(({ format }) => format !== 'ele');
+  if (found.length === 0) throw new Error('an ELE file needs its NODE file: open both together');
+  if (found.length > 2) throw new Error('open one body, or two: at rest and as it starts');
+  for (const one of found) {
+    if (one.format === 'node' && elements.length === 0) throw new Error('a NODE file needs its ELE file: open both together');
+    if (one.format === 'node') one.elements = (elements.find(({ name }) => stem(name) === stem(one.name)) ?? elements[0]).bytes;
+  }
+  if (STARTS.test(found[0].name) && found[1] && !STARTS.test(found[1].name)) found.reverse();
+  const [list] = lists;
+  const pins = list && { name: list.name, text: new TextDecoder().decode((await unpacked(list, ['txt'], 'TXT')).bytes) };
+  return { name: found[0].name, files: found, ...(pins && { pins }) };
+}
+
+const stem = (name) => name.replace(/\.(node|ele)(\.gz)?$/i, '');
+
 /** Lets the browser save `content` under `name`. */
 export function save(content, name, type) {
   const link = document.createElement('a');

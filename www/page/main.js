@@ -10,14 +10,16 @@ import { listenToKeys } from './keys.js';
 import { nextFrame } from './mode.js';
 import { clearNotice, describe, notice } from './notice.js';
 import { Round } from './round.js';
+import { connectSight } from './sight.js';
 import { drawStatus } from './status.js';
+import { Untangle } from './untangle.js';
 import { connectViews, flip, flipTheme, follow, nameViews, project, projecting } from './views.js';
 
 const $ = (id) => document.getElementById(id);
 
 /** What the modes share. */
 const page = { canvas: undefined, foldfree: undefined, active: undefined, busy: setBusy };
-const modes = { flatten: new Flatten(page), deform: new Deform(page), round: new Round(page) };
+const modes = { flatten: new Flatten(page), deform: new Deform(page), untangle: new Untangle(page), round: new Round(page) };
 modes.compare = new Compare(page, modes.flatten);
 page.active = modes[modeOf()];
 
@@ -117,6 +119,7 @@ function connect() {
   const hand = (name, ...args) => () => page.active.hands?.[name](...args);
   const show = (where) => () => page.active.scrub(where(page.active));
   for (const mode of Object.values(modes)) mode.connect();
+  connectSight(() => page.active);
   for (const button of document.querySelectorAll('[data-mode-button]')) {
     button.addEventListener('click', () => switchTo(button.dataset.modeButton));
   }
@@ -156,7 +159,7 @@ function connect() {
     r: act('reset'), f: () => page.canvas?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
     p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     m: () => switchTo(MODES[(MODES.indexOf(page.active.name) + 1) % MODES.length]),
-    s: () => page.active.setClock?.(page.active.wanted.clock === 'seconds' ? 'iterations' : 'seconds'),
+    s: () => (page.active.nextState ? page.active.nextState() : page.active.setClock?.(page.active.wanted.clock === 'seconds' ? 'iterations' : 'seconds')),
     h: hand('next'), j: hand('nudge', -1, 0), l: hand('nudge', 1, 0), i: hand('nudge', 0, 1), k: hand('nudge', 0, -1),
     u: hand('twist', -1), y: hand('twist', 1), b: hand('nextPlace'), n: hand('pinPlace'), Delete: hand('release', false), Backspace: hand('release', false),
     ...Object.fromEntries(digits),

@@ -42,7 +42,7 @@ function arrange() {
   const box = $('invite').style;
   // Over the middle of the map, a little above its middle; below the whole solid, which has to be seen.
   const { mode } = document.body.dataset;
-  const deforming = mode === 'deform';
+  const deforming = mode === 'deform' || mode === 'untangle';
   const comparing = mode === 'compare';
   const rounding = mode === 'round';
   const column = wide && !narrow.matches && !projecting() ? 292 : 0;

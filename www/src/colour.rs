@@ -42,10 +42,30 @@ pub fn diverging(t: f64) -> Rgb {
     std::array::from_fn(|k| (STOPS[i][k] + part * (STOPS[i + 1][k] - STOPS[i][k])).round() as u8)
 }
 
-/// The two ramps as `n` RGBA texels each, for the GPU: [`cividis`], then [`diverging`].
+/// How many colours [`zones`] has.
+pub const ZONE_COLOURS: usize = 9;
+
+/// A neutral grey for what is in no zone, then eight colours to tell zones apart, none of them like the vermilion of what
+/// is inverted (from Okabe & Ito 2008 and lighter and darker ones): `t` in [0, 1].
+pub fn zones(t: f64) -> Rgb {
+    const COLOURS: [Rgb; ZONE_COLOURS] = [
+        [206, 209, 212],
+        [0, 114, 178],
+        [240, 228, 66],
+        [0, 158, 115],
+        [204, 121, 167],
+        [86, 180, 233],
+        [120, 94, 160],
+        [150, 160, 60],
+        [20, 80, 90],
+    ];
+    COLOURS[((t.clamp(0.0, 1.0) * ZONE_COLOURS as f64) as usize).min(ZONE_COLOURS - 1)]
+}
+
+/// The ramps as `n` RGBA texels each, for the GPU: [`cividis`], [`diverging`], [`zones`], and the last again.
 pub fn ramp_texels(n: usize) -> Vec<u8> {
     let last = n.saturating_sub(1).max(1) as f64;
-    [cividis, diverging]
+    [cividis, diverging, zones, zones]
         .iter()
         .flat_map(|ramp| {
             (0..n).flat_map(move |i| {
@@ -88,6 +108,7 @@ pub fn curve_style(method: &str) -> CurveStyle {
         "lim-frozen" => ([118, 52, 160], [190, 140, 236], &[8.0, 3.0]),
         "lim-off" => ([118, 52, 160], [190, 140, 236], &[2.0, 3.0]),
         "lim-frozen-off" => ([118, 52, 160], [190, 140, 236], &[8.0, 3.0, 2.0, 3.0]),
+        "gini" => ([134, 58, 22], [226, 148, 104], &[]),
         "arap" => ([164, 76, 130], [204, 121, 167], &[7.0, 3.0, 1.5, 3.0]),
         _ => ([90, 94, 100], [180, 184, 190], &[]),
     };
@@ -196,7 +217,7 @@ mod tests {
         assert_eq!(ramp_position(1.0), 0.0);
         assert!((ramp_position(2.0) - 0.5).abs() < 1e-12);
         assert_eq!(ramp_position(f64::INFINITY), 1.0);
-        assert_eq!(ramp_texels(256).len(), 2048);
+        assert_eq!(ramp_texels(256).len(), 4096);
     }
 
     #[test]

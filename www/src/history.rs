@@ -61,6 +61,8 @@ pub struct Record {
     pub switched_at: Option<u32>,
     /// Of a locally injective mapping: what the step was made with.
     pub lim: Option<LimStep>,
+    /// Of an untangling: which part of which step this is, and what is wrong then.
+    pub moment: Option<Moment>,
     /// The phases of the iteration that led here.
     pub phases: Vec<Phase>,
 }
@@ -82,6 +84,61 @@ pub struct LimStep {
     pub arrived: [u32; 2],
 }
 
+/// A part of a step of an untangling. Counts of three are of what the step works on, of the state that is handed out, and
+/// of the primary solver's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moment {
+    /// Which part.
+    pub part: Part,
+    /// Of the polisher: which iteration; and how many the step has.
+    pub polish: [u32; 2],
+    /// Inverted elements.
+    pub inverted: [u32; 3],
+    /// Elements below their least measure, of what the step works on, where they are counted.
+    pub violated: Option<u32>,
+    /// Zones of violated constraints.
+    pub zones: u32,
+    /// Iterations of the quadratic problem.
+    pub solves: u32,
+    /// Its constraints, and those that are active.
+    pub constraints: [u32; 2],
+    /// Whether the step's result is handed out.
+    pub accepted: bool,
+    /// The least η of an element, and the one they began with, relative to the measure at rest.
+    pub offset: [f64; 2],
+    /// Elements whose η was reduced.
+    pub reduced: u32,
+    /// The smallest measure of an element of the state that is handed out, relative to that at rest.
+    pub smallest: f64,
+}
+
+/// The parts of a step of an untangling, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// No step yet.
+    Start,
+    /// Every element on its own.
+    Local,
+    /// The quadratic problem.
+    Quadratic,
+    /// An iteration of the polisher.
+    Polish,
+    /// What comes of the step.
+    Outcome,
+}
+
+impl Part {
+    fn from_code(code: f64) -> Self {
+        match code as i64 {
+            0 => Self::Start,
+            1 => Self::Local,
+            2 => Self::Quadratic,
+            3 => Self::Polish,
+            _ => Self::Outcome,
+        }
+    }
+}
+
 /// How many numbers the page sends with an iterate, phases apart.
 pub const RECORD_WIDTH: usize = 10;
 
@@ -89,10 +146,11 @@ impl Record {
     /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields (−1 for a switch that
     /// has not been), and three (kind, count, milliseconds) for every phase. `None` if the first is too short.
     ///
-    /// Behind them may stand the seven of a [`LimStep`].
+    /// Behind them may stand the seven of a [`LimStep`], or the sixteen of a [`Moment`].
     pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
-        let (numbers, lim) = numbers.split_at_checked(RECORD_WIDTH)?;
-        let lim = match *lim {
+        let (numbers, own) = numbers.split_at_checked(RECORD_WIDTH)?;
+        let moment = Moment::from_numbers(own);
+        let lim = match *own {
             [alpha, mu, sigma, error, barrier, arrived, all] => Some(LimStep {
                 alpha,
                 mu,
@@ -130,6 +188,7 @@ impl Record {
             seconds,
             switched_at: (switched_at >= 0.0).then_some(switched_at as u32),
             lim,
+            moment,
             phases: phases
                 .as_chunks::<3>()
                 .0
@@ -150,6 +209,48 @@ impl Record {
         } else {
             f64::INFINITY
         }
+    }
+}
+
+impl Moment {
+    /// From the numbers of the page: part, iteration of the polisher and of how many, three counts of inverted
+    /// elements, violated constraints (−1: not counted), zones, iterations of the quadratic problem, its constraints and active ones,
+    /// accepted or not, least and first η, how many are reduced, smallest measure.
+    fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let &[
+            part,
+            polish,
+            polishes,
+            trial,
+            result,
+            primary,
+            violated,
+            zones,
+            solves,
+            constraints,
+            active,
+            accepted,
+            least,
+            first,
+            reduced,
+            smallest,
+        ] = numbers
+        else {
+            return None;
+        };
+        Some(Self {
+            part: Part::from_code(part),
+            polish: [polish as u32, polishes as u32],
+            inverted: [trial as u32, result as u32, primary as u32],
+            violated: (violated >= 0.0).then_some(violated as u32),
+            zones: zones as u32,
+            solves: solves as u32,
+            constraints: [constraints as u32, active as u32],
+            accepted: accepted != 0.0,
+            offset: [least, first],
+            reduced: reduced as u32,
+            smallest,
+        })
     }
 }
 
@@ -282,6 +383,21 @@ mod tests {
         lim[10..].copy_from_slice(&[1e8, 0.1, 0.5, 0.25, 0.02, 3.0, 4.0]);
         let step = Record::from_numbers(&lim, &[]).and_then(|r| r.lim).unwrap();
         assert_eq!((step.alpha, step.arrived), (1e8, [3, 4]));
+        let mut moment = [0.0; 26];
+        moment[10..].copy_from_slice(&[
+            3.0, 2.0, 5.0, 7.0, 9.0, 8.0, 20.0, 4.0, 50.0, 30.0, 12.0, 1.0, 0.01, 0.1, 6.0, -0.5,
+        ]);
+        let record = Record::from_numbers(&moment, &[]).unwrap();
+        assert_eq!(record.lim, None);
+        let m = record.moment.unwrap();
+        assert_eq!(
+            (m.part, m.polish, m.inverted),
+            (Part::Polish, [2, 5], [7, 9, 8])
+        );
+        assert_eq!(
+            (m.constraints, m.offset, m.accepted),
+            ([30, 12], [0.01, 0.1], true)
+        );
     }
 
     #[test]

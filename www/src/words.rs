@@ -1,6 +1,6 @@
 //! What a step did, in the words and symbols of the papers.
 
-use crate::history::PhaseKind;
+use crate::history::{Moment, Part, PhaseKind};
 
 /// One line of the inspector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,6 +86,7 @@ pub fn method_name(method: &str) -> &str {
         "lim-frozen" => "LIM, frozen",
         "lim-off" => "LIM, free",
         "lim-frozen-off" => "LIM, frozen, free",
+        "gini" => "GINI",
         "arap" => "ARAP",
         "lscm" => "LSCM",
         "harmonic" => "Harmonic",
@@ -105,6 +106,7 @@ pub fn citation(method: &str) -> &'static str {
         "l-bfgs" => "Liu et al. 2017",
         "lim" => "Schüller et al. 2013",
         "lim-frozen" | "lim-off" | "lim-frozen-off" => "Schüller 2013",
+        "gini" => "Overby et al. 2021",
         "arap" => "Liu et al. 2008",
         "lscm" => "Lévy et al. 2002",
         "harmonic" => "Eck et al. 1995",
@@ -232,11 +234,48 @@ fn locally_injective(method: &str, kind: PhaseKind) -> Explanation {
     }
 }
 
+/// What a phase of an untangling's step does: its last phase is the polisher.
+fn untangling(kind: PhaseKind) -> Explanation {
+    match kind {
+        PhaseKind::Local => Explanation {
+            name: "Local step",
+            symbol: "Zᵢ ← prox(Fᵢ + Uᵢ)",
+            equation: "(5a), (5b)",
+            unit: None,
+            sentence: "Every {element} on its own trades its energy against staying near its Jacobian, as the primary solver has it; it may choose to stay inverted.",
+        },
+        PhaseKind::Global => Explanation {
+            name: "Quadratic problem",
+            symbol: "minimise with cᵢ ≥ η, linear",
+            equation: "(6), (10)",
+            unit: Some(["iteration", "iterations"]),
+            sentence: "All vertices together go where the {elements} want them, under linear constraints that keep the measure of those in trouble: by its dual, one solve with the factored Laplacian an iteration.",
+        },
+        PhaseKind::Reweight => Explanation {
+            name: "Reweight",
+            symbol: "nothing",
+            equation: "–",
+            unit: None,
+            sentence: "The weights of this method stay as they are.",
+        },
+        PhaseKind::Evaluate => Explanation {
+            name: "Polisher",
+            symbol: "dX ← −Jᵀ(JJᵀ + γD)⁻¹ h",
+            equation: "(12), (13)",
+            unit: Some(["iteration", "iterations"]),
+            sentence: "Every {element} below its least measure η joins the constraints; those that share vertices are a zone, and every zone on its own takes a step of Levenberg and Marquardt’s method towards η.",
+        },
+    }
+}
+
 /// What a phase of a method's iteration does. Equation numbers are those of the WRAPD paper
 /// (Brown & Narain 2021) unless a name says otherwise.
 pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
     if matches!(method, "cm" | "slim" | "newton") {
         return second_order(method, kind);
+    }
+    if method == "gini" {
+        return untangling(kind);
     }
     if method.starts_with("lim") {
         return locally_injective(method, kind);
@@ -323,6 +362,18 @@ pub fn explain(method: &str, kind: PhaseKind) -> Explanation {
     }
 }
 
+/// The name of a part of a step of an untangling.
+pub fn moment_name(moment: &Moment) -> String {
+    match moment.part {
+        Part::Start => "start".into(),
+        Part::Local => "local step".into(),
+        Part::Quadratic => "quadratic problem".into(),
+        Part::Polish => format!("polisher {} of {}", moment.polish[0], moment.polish[1]),
+        Part::Outcome if moment.accepted => "handed out".into(),
+        Part::Outcome => "not handed out".into(),
+    }
+}
+
 /// What the energy of the run counts, with the value of an isometry.
 pub fn energy_caption(energy: &str, solid: bool) -> &'static str {
     if energy.starts_with("lim:") {
@@ -361,6 +412,7 @@ mod tests {
             "lim-frozen",
             "lim-off",
             "lim-frozen-off",
+            "gini",
             "arap",
             "lscm",
             "harmonic",

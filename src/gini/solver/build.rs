@@ -116,6 +116,7 @@ impl<const D: usize> Gini<D> {
             trial: x.clone(),
             trial_values: values.clone(),
             step: vec![[0.0; D]; elimination.free],
+            trace: None,
             best: Best {
                 inverted: usize::MAX,
                 smallest: f64::NEG_INFINITY,

@@ -77,6 +77,25 @@ fn spell(event: Event) -> (&'static str, JsValue) {
     }
 }
 
+fn is_planar(bench: &Bench) -> bool {
+    bench.body.as_ref().is_some_and(|body| body.solid.planar)
+}
+
+/// A figure that is untangled has nothing to cut open: it takes the room of both views.
+fn whole_figure(bench: &Bench, mut views: Vec<(View, layout::Area)>) -> Vec<(View, layout::Area)> {
+    if !(bench.is_untangling() && is_planar(bench)) {
+        return views;
+    }
+    let map = views.iter().find(|(view, _)| *view == View::Map).copied();
+    let shape = views.iter_mut().find(|(view, _)| *view == View::Shape);
+    if let (Some((_, map)), Some((_, shape))) = (map, shape) {
+        shape.w = shape.w.max(map.x + map.w - shape.x);
+        shape.h = shape.h.max(map.y + map.h - shape.y);
+        views.retain(|(view, _)| *view != View::Map);
+    }
+    views
+}
+
 fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
     let all = ui.max_rect();
     let arrange = match bench.race {
@@ -90,6 +109,7 @@ fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
         bench.inspector,
         bench.text,
     );
+    let views = whole_figure(bench, views);
     let mut hover = None;
     for (view, area) in &views {
         let rect = Rect::from_min_size(all.min + vec2(area.x, area.y), vec2(area.w, area.h));
@@ -97,6 +117,10 @@ fn draw(ui: &mut egui::Ui, bench: &mut Bench) {
             ui.set_clip_rect(rect);
             match view {
                 View::Shape if bench.body.is_some() => solid::show_skin(ui, rect, bench),
+                View::Map if bench.is_untangling() && is_planar(bench) => {
+                    solid::show_skin(ui, rect, bench);
+                }
+                View::Plot if bench.is_untangling() => plot::violations::show(ui, rect, bench),
                 View::Map if bench.body.is_some() && bench.is_lim() => {
                     solid::show_cut_and_parameters(ui, rect, bench);
                 }

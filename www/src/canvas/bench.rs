@@ -9,7 +9,7 @@ use super::solid::Body;
 use crate::camera::{Orbit, Pan};
 use crate::colour::{DARK, LIGHT, Theme};
 use crate::distortion::RestShapes;
-use crate::history::{Frames, Record, Run};
+use crate::history::{Frames, Moment, Record, Run};
 use crate::layout::View;
 use crate::outline;
 use crate::words::{Nouns, PLANAR, SOLID, SURFACE};
@@ -55,6 +55,39 @@ impl PlotHeight {
     }
 }
 
+/// The states of an untangling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum State {
+    /// What a step works on, x̂ of the paper.
+    #[default]
+    Trial,
+    /// x, which is handed out.
+    Result,
+    /// x̄, the primary solver's.
+    Primary,
+}
+
+impl State {
+    /// From the page's name for it.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "trial" => Some(Self::Trial),
+            "result" => Some(Self::Result),
+            "primary" => Some(Self::Primary),
+            _ => None,
+        }
+    }
+
+    /// What it is called in a heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Trial => "Being polished",
+            Self::Result => "Handed out",
+            Self::Primary => "Primary solver",
+        }
+    }
+}
+
 /// Something the page must hear of.
 pub enum Event {
     /// A person chose an iterate on the plot.
@@ -89,6 +122,10 @@ pub struct Bench {
     pub run: Run,
     /// Its maps.
     pub frames: Frames,
+    /// Of an untangling, beside what its steps work on: the state that is handed out, and the primary solver's.
+    pub states: [Frames; 2],
+    /// Which of the three is shown.
+    pub state: State,
     /// Curves of the runs before it on this problem.
     pub earlier: Vec<Run>,
     /// Which record is shown.
@@ -146,6 +183,8 @@ impl Bench {
             race: None,
             run: Run::default(),
             frames: Frames::new(FRAME_BUDGET),
+            states: [(); 2].map(|()| Frames::new(FRAME_BUDGET)),
+            state: State::default(),
             earlier: Vec::new(),
             shown: 0,
             shown_map: 0,
@@ -216,7 +255,7 @@ impl Bench {
         self.earlier.clear();
         self.crossings.clear();
         self.run = Run::default();
-        self.frames.clear();
+        self.clear_frames();
         self.hover = None;
         (self.shown, self.shown_map) = (0, 0);
     }
@@ -242,7 +281,7 @@ impl Bench {
             self.earlier.drain(..excess);
         }
         self.crossings.clear();
-        self.frames.clear();
+        self.clear_frames();
         self.pan.follows = true;
         (self.shown, self.shown_map) = (0, 0);
     }
@@ -261,6 +300,48 @@ impl Bench {
         if self.run.records.len() == 1 {
             self.show(0);
         }
+    }
+
+    /// Adds a moment of an untangling: what its step works on with the zones of its elements, the state that is handed
+    /// out, and the primary solver's.
+    pub fn push_moment(&mut self, record: Record, trial: Vec<f32>, others: [Vec<f32>; 2]) {
+        let Some(body) = &mut self.body else { return };
+        if !body.fits(&trial) || !others.iter().all(|other| body.fits(other)) {
+            return;
+        }
+        body.zones = true;
+        let index = self.run.records.len();
+        for (frames, other) in self.states.iter_mut().zip(others) {
+            frames.push(index, other);
+        }
+        self.push(record, trial);
+    }
+
+    fn clear_frames(&mut self) {
+        self.frames.clear();
+        self.states.iter_mut().for_each(Frames::clear);
+    }
+
+    /// The iterates of the state on show.
+    fn chosen(&self) -> &Frames {
+        let others = &self.states;
+        match self.state {
+            State::Result if !others[0].is_empty() => &others[0],
+            State::Primary if !others[1].is_empty() => &others[1],
+            _ => &self.frames,
+        }
+    }
+
+    /// What is known of the moment on show, of an untangling.
+    pub fn moment(&self) -> Option<&Moment> {
+        self.record()?.moment.as_ref()
+    }
+
+    /// Inverted elements of the iterate and the state on show, as the solver counts them.
+    pub fn reported_inverted(&self) -> Option<u32> {
+        let record = self.record()?;
+        let of_state = record.moment.map(|m| m.inverted[self.state as usize]);
+        Some(of_state.unwrap_or(record.inverted))
     }
 
     /// Adds an iterate of which only the numbers are known.
@@ -296,7 +377,7 @@ impl Bench {
 
     /// The map on show.
     pub fn map(&self) -> Option<&[f32]> {
-        self.frames.at(self.shown).map(|(_, map)| map)
+        self.chosen().at(self.shown).map(|(_, map)| map)
     }
 
     /// Brings the GPU up to date with the iterate on show.
@@ -308,14 +389,18 @@ impl Bench {
             race.refresh(&self.problem, &mut self.painting);
             return;
         }
+        if let Some(mut body) = self.body.take() {
+            if let Some((index, map)) = self.chosen().at(self.shown) {
+                body.refresh(map);
+                self.shown_map = index;
+            }
+            self.body = Some(body);
+            return;
+        }
         let Some((index, map)) = self.frames.at(self.shown) else {
             return;
         };
         self.shown_map = index;
-        if let Some(body) = &mut self.body {
-            body.refresh(map);
-            return;
-        }
         let Painted {
             inverted,
             thinning,
@@ -346,6 +431,11 @@ impl Bench {
     /// Whether what is on show was made by locally injective mappings.
     pub fn is_lim(&self) -> bool {
         self.run.method.starts_with("lim")
+    }
+
+    /// Whether what is on show is an untangling.
+    pub fn is_untangling(&self) -> bool {
+        self.run.method == "gini"
     }
 
     /// What things are called on this bench.

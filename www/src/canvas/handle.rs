@@ -7,7 +7,7 @@ use eframe::egui;
 use glam::Vec3;
 use wasm_bindgen::prelude::*;
 
-use super::bench::Bench;
+use super::bench::{Bench, State};
 use super::race::Race;
 use super::solid::{Body, Cut};
 use super::stage::{Mode, Stage};
@@ -174,6 +174,42 @@ impl BenchHandle {
         }
     }
 
+    /// Adds a moment of an untangling: numbers as for `pushFrame`, with the sixteen of a moment behind the first ten; what
+    /// the step works on (n×3) and the zone of every element (m, or nothing); the state that is handed out and the
+    /// primary solver's (n×3 each).
+    #[wasm_bindgen(js_name = pushMoment)]
+    pub fn push_moment(
+        &self,
+        numbers: &[f64],
+        phases: &[f64],
+        trial: &[f32],
+        zones: &[f32],
+        result: Vec<f32>,
+        primary: Vec<f32>,
+    ) {
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            let trial = [trial, zones].concat();
+            self.change(|bench| bench.push_moment(record, trial, [result, primary]));
+        }
+    }
+
+    /// Which state of an untangling is shown: `trial`, `result`, `primary`.
+    #[wasm_bindgen(js_name = setState)]
+    pub fn set_state(&self, name: &str) {
+        if let Some(state) = State::from_name(name) {
+            self.change(|bench| {
+                bench.state = state;
+                bench.redraw();
+            });
+        }
+    }
+
+    /// Looks at where these positions (n×3) are, and cuts there, instead of at those at rest.
+    #[wasm_bindgen(js_name = lookAt)]
+    pub fn look_at(&self, positions: &[f64]) {
+        self.change(|bench| bench.look_at(positions));
+    }
+
     /// Shows an iterate.
     #[wasm_bindgen(js_name = showFrame)]
     pub fn show_frame(&self, index: usize) {
@@ -265,7 +301,7 @@ impl BenchHandle {
         });
     }
 
-    /// What the colours of a solid mean: `stretch`, `volume`, `stress`.
+    /// What the colours of a solid mean: `stretch`, `volume`, `stress`, `zone`.
     #[wasm_bindgen(js_name = setField)]
     pub fn set_field(&self, name: &str) {
         if let Some(field) = Field::from_name(name) {

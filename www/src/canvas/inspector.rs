@@ -1,5 +1,7 @@
 //! What the step on show did, its numbers, and the problem.
 
+mod moment;
+
 use eframe::egui::{self, Align2, Rect, Sense, Stroke, pos2, vec2};
 
 use super::bench::Bench;
@@ -144,6 +146,9 @@ impl<'a> Column<'a> {
             self.section("This step", "");
             return;
         };
+        if let Some(moment) = &record.moment {
+            return self.moment(record, moment);
+        }
         if record.iteration == 0 {
             self.section(
                 "The start",
@@ -311,7 +316,12 @@ impl<'a> Column<'a> {
         let Some(record) = self.bench.record() else {
             return;
         };
-        self.section("This iterate", "");
+        let handed = if self.bench.is_untangling() {
+            "What is handed out"
+        } else {
+            "This iterate"
+        };
+        self.section(handed, "");
         let nouns = self.bench.nouns();
         let energy = number(record.energy, 7);
         if self.bench.is_lim() {
@@ -327,15 +337,17 @@ impl<'a> Column<'a> {
             self.pair("energy (relative)", &energy, &format!("Surface scaled to unit area; an isometry has {isometry}. While triangles are inverted it is that of the local variables Z."));
         }
         let elements = nouns.elements;
-        self.pair(
-            &format!("inverted {elements}"),
-            &record.inverted.to_string(),
-            &format!(
-                "{} that are turned inside out: there the {} passes through itself.",
-                capital(elements),
-                nouns.whole
-            ),
-        );
+        if !self.bench.is_untangling() {
+            self.pair(
+                &format!("inverted {elements}"),
+                &record.inverted.to_string(),
+                &format!(
+                    "{} that are turned inside out: there the {} passes through itself.",
+                    capital(elements),
+                    nouns.whole
+                ),
+            );
+        }
         self.pair(nouns.worst, &number(record.worst_distortion(), 4), &format!("{} over the {elements}; 1 where no length changes, without bound while one is inverted.", nouns.formula));
         let range = format!(
             "{} … {}",
@@ -366,7 +378,7 @@ impl<'a> Column<'a> {
 
     /// The runs on this problem; returns whether to forget the earlier ones.
     fn runs(&mut self) -> bool {
-        if self.bench.earlier.is_empty() {
+        if self.bench.earlier.is_empty() || self.bench.is_untangling() {
             return false;
         }
         self.section("Runs on this problem", "");

@@ -19,6 +19,8 @@ pub struct Legend {
     pub position: fn(f64) -> f32,
     /// Values that are named.
     pub ticks: &'static [(f64, &'static str)],
+    /// Whether the ramp is clamped at its upper end.
+    pub clamped_above: bool,
     /// Whether the ramp is clamped at its lower end too.
     pub clamped_below: bool,
 }
@@ -67,7 +69,9 @@ pub fn ramp(painter: &egui::Painter, rect: Rect, bench: &Bench, legend: &Legend)
         let cell = Rect::from_min_max(pos2(x(i), bar.top()), pos2(x(i + 1) + 0.5, bar.bottom()));
         painter.rect_filled(cell, 0.0, style::colour((legend.ramp)(t)));
     }
-    clamped(painter, above, (legend.ramp)(1.0));
+    if legend.clamped_above {
+        clamped(painter, above, (legend.ramp)(1.0));
+    }
     if legend.clamped_below {
         clamped(painter, below, (legend.ramp)(0.0));
     }
@@ -106,7 +110,7 @@ fn clamped(painter: &egui::Painter, swatch: Rect, colour: Rgb) {
 /// `drawn` is their number as drawn, for when the solver has not counted.
 pub fn inverted_key(painter: &egui::Painter, rect: Rect, bench: &Bench, drawn: usize) -> f32 {
     let theme = bench.theme;
-    let reported = bench.record().map_or(drawn, |r| r.inverted as usize);
+    let reported = bench.reported_inverted().map_or(drawn, |n| n as usize);
     let words = if reported == 0 {
         "none inverted".to_owned()
     } else {

@@ -29,6 +29,7 @@ pub(super) const LEGEND: Legend = Legend {
         (3.0, "3"),
         (4.0, "4+"),
     ],
+    clamped_above: true,
     clamped_below: false,
 };
 

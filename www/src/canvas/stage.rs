@@ -12,6 +12,8 @@ pub enum Mode {
     Deform,
     /// Several solvers on one surface.
     Compare,
+    /// Bodies that are folded, and no more in the end.
+    Untangle,
 }
 
 impl Mode {
@@ -21,6 +23,7 @@ impl Mode {
             "flatten" => Some(Self::Flatten),
             "deform" => Some(Self::Deform),
             "compare" => Some(Self::Compare),
+            "untangle" => Some(Self::Untangle),
             _ => None,
         }
     }
@@ -28,7 +31,7 @@ impl Mode {
 
 /// One bench a mode: what lies on each stays when another is shown.
 pub struct Stage {
-    benches: [Bench; 3],
+    benches: [Bench; 4],
     mode: Mode,
 }
 
@@ -36,7 +39,7 @@ impl Stage {
     /// Empty benches; flattening is shown.
     pub fn new() -> Self {
         Self {
-            benches: [Bench::new(), Bench::new(), Bench::comparing()],
+            benches: [Bench::new(), Bench::new(), Bench::comparing(), Bench::new()],
             mode: Mode::default(),
         }
     }
@@ -67,7 +70,7 @@ impl Stage {
     }
 
     /// All benches, for what they share: theme, text size, layout.
-    pub fn all(&mut self) -> &mut [Bench; 3] {
+    pub fn all(&mut self) -> &mut [Bench] {
         &mut self.benches
     }
 }

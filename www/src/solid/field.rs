@@ -1,5 +1,7 @@
 //! What the colours of a solid mean.
 
+use crate::colour::ZONE_COLOURS;
+
 /// A quantity that has one value a tetrahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Field {
@@ -10,6 +12,8 @@ pub enum Field {
     Volume,
     /// Von Mises stress, relative to the stiffness of the material.
     Stress,
+    /// Which zone of violated constraints it is in.
+    Zone,
 }
 
 /// Stress at which the ramp begins and ends, relative.
@@ -28,6 +32,7 @@ impl Field {
             "stretch" => Some(Self::Stretch),
             "volume" => Some(Self::Volume),
             "stress" => Some(Self::Stress),
+            "zone" => Some(Self::Zone),
             _ => None,
         }
     }
@@ -38,6 +43,7 @@ impl Field {
             Self::Stretch => "stretch or squeeze, max(σ₁, 1/σ₃)",
             Self::Volume => "volume, relative to rest",
             Self::Stress => "von Mises stress ÷ stiffness",
+            Self::Zone => "zones of violated constraints",
         }
     }
 
@@ -47,6 +53,7 @@ impl Field {
             Self::Stretch => "stretch or squeeze, max(σ₁, 1/σ₂)",
             Self::Volume => "area, relative to rest",
             Self::Stress => "von Mises stress",
+            Self::Zone => "zones of violated constraints",
         }
     }
 
@@ -67,6 +74,16 @@ impl Field {
                 (1.0, "100 %"),
                 (10.0, "1000 %+"),
             ],
+            Self::Zone => &[(0.0, "none")],
+        }
+    }
+
+    /// Which ramp it has on the graphics card.
+    pub fn row(self) -> f32 {
+        match self {
+            Self::Stretch | Self::Stress => 0.0,
+            Self::Volume => 1.0,
+            Self::Zone => 2.0,
         }
     }
 
@@ -76,6 +93,7 @@ impl Field {
             Self::Stretch => (1.0, STRETCH),
             Self::Volume => (1.0 / VOLUME, VOLUME),
             Self::Stress => (STRESS[0], STRESS[1]),
+            Self::Zone => return zone_colour(value as usize),
         };
         let t = (value.max(f64::MIN_POSITIVE) / low).ln() / (high / low).ln();
         if t > 1.0 {
@@ -87,6 +105,15 @@ impl Field {
         }
         t.max(0.0) as f32
     }
+}
+
+/// Where on their ramp the colour of a zone is, the first being 1; 0: of what is in none. Colours come again.
+fn zone_colour(zone: usize) -> f32 {
+    let colour = match zone.checked_sub(1) {
+        Some(zone) => 1 + zone % (ZONE_COLOURS - 1),
+        None => 0,
+    };
+    (colour as f32 + 0.5) / ZONE_COLOURS as f32
 }
 
 #[cfg(test)]
@@ -111,6 +138,17 @@ mod tests {
         assert_eq!(Field::Volume.position(0.1), 3.0);
         assert_eq!(Field::Stress.position(0.0), 0.0);
         assert_eq!(Field::Volume.position(1.0), 0.5);
+    }
+
+    #[test]
+    fn neighbouring_zones_have_other_colours() {
+        let at = |zone: usize| Field::Zone.position(zone as f64);
+        assert!((0..40).all(|z| (0.0..1.0).contains(&at(z)) && at(z) != at(z + 1)));
+        assert_eq!(at(1), at(ZONE_COLOURS));
+        assert!(
+            (1..40).all(|z| at(z) != at(0)),
+            "the colour of none is its own"
+        );
     }
 
     #[test]

@@ -187,7 +187,7 @@ impl Gpu {
             0,
             Gl::RGBA as i32,
             256,
-            2,
+            4,
             0,
             Gl::RGBA,
             Gl::UNSIGNED_BYTE,

@@ -46,7 +46,7 @@ pub struct SolidLook {
     pub turn: Mat3,
     /// Radius of the solid.
     pub radius: f32,
-    /// Which ramp: 0 cividis, 1 diverging.
+    /// Which ramp: 0 cividis, 1 diverging, 2 zones.
     pub row: f32,
     /// How much of the field's colour the skin takes, 0–1.
     pub tint: f32,

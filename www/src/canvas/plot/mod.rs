@@ -4,6 +4,7 @@
 mod inversions;
 mod names;
 pub(super) mod switch;
+pub(super) mod violations;
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 

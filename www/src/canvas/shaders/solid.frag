@@ -13,7 +13,9 @@ out vec4 colour;
 void main() {
     if (v_height > 0.0) discard;
     bool bad = v_distortion < 0.0;
-    vec3 c = bad ? inverted(v_edge) : mix(u_skin, ramp_at(min(v_distortion, 1.0), u_row), u_tint);
+    // Below -1: inverted, on the ground of a zone.
+    vec3 ground = v_distortion < -1.5 ? ramp_at(-v_distortion - 2.0, u_row) : vec3(1.0, 0.90, 0.82);
+    vec3 c = bad ? inverted(v_edge, ground) : mix(u_skin, ramp_at(min(v_distortion, 1.0), u_row), u_tint);
     if (!bad && u_tint > 0.0) {
         if (v_distortion > 2.5) c = clamped(mix(c, ramp_at(0.0, u_row), u_tint));
         else if (v_distortion > 1.0) c = clamped(c);

@@ -123,9 +123,13 @@ fn describe(body: &Body, t: usize, frame: &[f32]) -> String {
         .filter(|s| s.is_finite())
         .map(|s| format!("\nstress {} of the stiffness", number(f64::from(s), 3)))
         .unwrap_or_default();
+    let zone = body
+        .zone(t, frame)
+        .map(|zone| format!("\nin zone {zone}"))
+        .unwrap_or_default();
     let state = if s.smallest > 0.0 { "" } else { "\ninverted" };
     format!(
-        "tetrahedron {}\nσ {}   {}   {} (relative)\nvolume {} of rest{stress}{state}",
+        "tetrahedron {}\nσ {}   {}   {} (relative)\nvolume {} of rest{stress}{zone}{state}",
         whole(t),
         number(s.largest, 3),
         number(s.middle, 3),

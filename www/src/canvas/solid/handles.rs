@@ -62,9 +62,19 @@ pub fn draw(
     let ground = style::colour(theme.ground);
     let newest = bench.shown + 1 == bench.run.records.len();
     let outside = |v: &&u32| body.solid.outside.binary_search(v).is_ok();
-    for (i, handle) in body.handles.iter().enumerate() {
+    // Squares on every vertex of the skin would hide what is inside.
+    let shown = if all_is_held(bench, body) {
+        &[]
+    } else {
+        body.handles.as_slice()
+    };
+    for (i, handle) in shown.iter().enumerate() {
         let few = handle.len() <= FEW;
-        let side = if few { 9.0 } else { 3.6 };
+        let side = match few {
+            true => 9.0,
+            false if bench.is_untangling() => 2.6,
+            false => 3.6,
+        };
         for &v in handle.iter().filter(outside) {
             let square = Rect::from_center_size(place(at(positions, v)), vec2(side, side));
             if few {
@@ -73,7 +83,7 @@ pub fn draw(
             painter.rect_filled(square, 0.0, accent);
         }
         let centre = place(middle(handle, positions));
-        if !few {
+        if !few && !bench.is_untangling() {
             let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
             painter.rect_filled(square.expand(2.0), 0.0, ground);
             painter.rect_filled(square, 0.0, accent);
@@ -98,6 +108,13 @@ pub fn draw(
         painter.circle_stroke(ring, 6.0, Stroke::new(3.0, ground));
         painter.circle_stroke(ring, 6.0, Stroke::new(1.4, style::colour(theme.ink)));
     }
+}
+
+/// Whether all of the outside of a body is held while it is untangled.
+pub fn all_is_held(bench: &Bench, body: &Body) -> bool {
+    let held = body.handles.iter().flatten();
+    let outside = held.filter(|v| body.solid.outside.binary_search(v).is_ok());
+    bench.is_untangling() && outside.count() == body.solid.outside.len()
 }
 
 /// One mark for a handle of many vertices, one a vertex elsewhere.

@@ -69,6 +69,8 @@ pub struct Body {
     pub targets: Vec<(u32, Vec3)>,
     /// Where the newest step led those that are not there yet.
     pub sub_targets: Vec<(u32, Vec3)>,
+    /// Whether what comes with the positions are zones, not stresses.
+    pub zones: bool,
     /// The drag under way.
     pub grab: Option<Grab>,
     /// Vertex under the pointer.
@@ -115,13 +117,25 @@ impl Body {
 
     /// The stress of a tetrahedron in an iterate, if it came with one.
     pub fn stress(&self, t: usize, frame: &[f32]) -> Option<f32> {
-        frame.get(3 * self.solid.vertices + t).copied()
+        let stress = frame.get(3 * self.solid.vertices + t).copied();
+        stress.filter(|_| !self.zones)
+    }
+
+    /// The zone of violated constraints that an element is in, if it is in one.
+    pub fn zone(&self, t: usize, frame: &[f32]) -> Option<usize> {
+        let zone = frame.get(3 * self.solid.vertices + t).copied();
+        zone.filter(|zone| self.zones && *zone > 0.0)
+            .map(|zone| zone as usize)
     }
 
     /// Writes what the graphics card needs of an iterate.
     pub fn refresh(&mut self, frame: &[f32]) {
         let solid = &self.solid;
-        let stresses = &frame[3 * solid.vertices..];
+        let beside = &frame[3 * solid.vertices..];
+        let zone = |t: usize| {
+            let zone = beside.get(t).filter(|_| self.zones);
+            Field::Zone.position(f64::from(zone.copied().unwrap_or_default()))
+        };
         self.values.clear();
         self.inverted.clear();
         for (t, tetrahedron) in solid.tetrahedra.iter().enumerate() {
@@ -129,14 +143,19 @@ impl Body {
                 .rest
                 .stretches(t, stretch::corners(*tetrahedron, frame));
             let value = match (s.worst(), self.field) {
-                (None, _) => {
+                (None, field) => {
                     self.inverted.push(t as u32);
-                    -1.0
+                    if field == Field::Zone && zone(t) > Field::Zone.position(0.0) {
+                        -2.0 - zone(t)
+                    } else {
+                        -1.0
+                    }
                 }
+                (Some(_), Field::Zone) => zone(t),
                 (Some(worst), Field::Stretch) => Field::Stretch.position(worst),
                 (Some(_), Field::Volume) => Field::Volume.position(s.volume()),
                 (Some(_), Field::Stress) => {
-                    let stress = stresses.get(t).copied().unwrap_or(0.0);
+                    let stress = beside.get(t).copied().unwrap_or(0.0);
                     Field::Stress.position(f64::from(stress))
                 }
             };
@@ -154,15 +173,16 @@ impl Body {
         scratch.inverted.clear();
         for &t in &self.inverted {
             let [a, b, c, d] = solid.tetrahedra[t as usize];
+            let value = self.values[t as usize];
             if solid.planar {
-                let corners = [a, b, c].map(|v| corner(point(v), -1.0, 0.0));
+                let corners = [a, b, c].map(|v| corner(point(v), value, 0.0));
                 scratch.inverted.extend(corners);
                 continue;
             }
             for face in [[b, c, d], [a, d, c], [a, b, d], [a, c, b]] {
                 scratch
                     .inverted
-                    .extend(face.map(|v| corner(point(v), -1.0, 0.0)));
+                    .extend(face.map(|v| corner(point(v), value, 0.0)));
             }
         }
         scratch.creases.clear();
@@ -232,6 +252,7 @@ impl Body {
             Field::Volume if self.solid.planar => (colour::diverging, "area"),
             Field::Volume => (colour::diverging, "volume"),
             Field::Stress => (colour::cividis, "stress"),
+            Field::Zone => (colour::zones, "zones"),
         };
         Legend {
             caption: match self.solid.planar {
@@ -244,8 +265,10 @@ impl Body {
                 Field::Stretch => |v| Field::Stretch.position(v),
                 Field::Volume => |v| Field::Volume.position(v),
                 Field::Stress => |v| Field::Stress.position(v),
+                Field::Zone => |v| Field::Zone.position(v),
             },
             ticks: self.field.ticks(),
+            clamped_above: self.field != Field::Zone,
             clamped_below: self.field == Field::Volume,
         }
     }
@@ -256,7 +279,7 @@ impl Body {
             matrix: orbit.matrix(aspect),
             turn: Mat3::from_quat(orbit.rotation),
             radius: orbit.radius,
-            row: f32::from(u8::from(self.field == Field::Volume)),
+            row: self.field.row(),
             tint,
             plane,
         }
@@ -273,6 +296,21 @@ impl Bench {
     /// The same with triangles (m×3) of a plane z = constant.
     pub fn set_planar(&mut self, positions: &[f64], triangles: &[u32]) {
         self.set_body(positions, Solid::planar(positions, triangles));
+    }
+
+    /// Looks at where these positions are instead of at those at rest, and cuts there.
+    pub fn look_at(&mut self, positions: &[f64]) {
+        let Some(body) = &mut self.body else { return };
+        self.orbit = match body.solid.planar {
+            true => Orbit::above(positions),
+            false => Orbit::around(positions).reaching(REACH),
+        };
+        let points = positions.as_chunks::<3>().0.iter();
+        let points = points.map(|p| Vec3::from_array(p.map(|x| x as f32)));
+        let ends = points
+            .map(|p| (p, p))
+            .reduce(|(l, h), (p, q)| (l.min(p), h.max(q)));
+        (body.solid.low, body.solid.high) = ends.unwrap_or((body.solid.low, body.solid.high));
     }
 
     fn set_body(&mut self, positions: &[f64], solid: Solid) {

@@ -61,7 +61,12 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         let at = pos2(rect.left() + 14.0, rect.bottom() - 12.0);
         style::label(ui.painter(), bench, at, Align2::LEFT_BOTTOM, hint, true);
     }
-    let title = if planar { "Figure" } else { "Solid" };
+    let title = match (bench.is_untangling(), planar) {
+        (true, _) if bench.shown == 0 => "The start",
+        (true, _) => bench.state.title(),
+        (false, true) => "Figure",
+        (false, false) => "Solid",
+    };
     let elements = if planar { "triangles" } else { "tetrahedra" };
     let size = format!("{} {elements}", whole(body.solid.tetrahedra.len()));
     let right = legend::inverted_key(ui.painter(), rect, bench, body.inverted.len());
@@ -70,7 +75,11 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 }
 
 fn hint(bench: &Bench, body: &Body) -> &'static str {
-    if body.handles.is_empty() {
+    if handles::all_is_held(bench, body) {
+        "all of the outside is held; drag to turn"
+    } else if bench.is_untangling() {
+        "drag to turn"
+    } else if body.handles.is_empty() {
         "click a vertex to pin it, or shift-drag a box around some"
     } else if body.box_tool {
         "drag a box around the vertices to pin"
@@ -170,7 +179,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
         }
         body.grab = None;
     }
-    let free = body.grab.is_none() && !shift && !body.box_tool;
+    let free = body.grab.is_none() && !shift && !body.box_tool && !bench.is_untangling();
     body.over = None;
     if let (Some(p), Some(frame)) = (response.hover_pos().filter(|_| free), bench.map()) {
         let positions = body.positions(frame);
@@ -207,7 +216,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
     match body.grab {
         Some(Grab::Vertices(..) | Grab::Turn(_)) => ui.ctx().set_cursor_icon(CursorIcon::Grabbing),
         Some(Grab::Box(_)) => ui.ctx().set_cursor_icon(CursorIcon::Crosshair),
-        None if response.hovered() && (shift || body.box_tool) => {
+        None if response.hovered() && (shift || body.box_tool) && !bench.is_untangling() => {
             ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
         }
         _ => {}
@@ -225,7 +234,8 @@ fn begin(
     origin: Option<Pos2>,
     local: impl Fn(Pos2) -> Vec2,
 ) -> Grab {
-    let (Some(origin), true) = (origin, by_main) else {
+    // What is held while a body is untangled stays where it is.
+    let (Some(origin), true) = (origin, by_main && !bench.is_untangling()) else {
         return Grab::Camera;
     };
     if shift || body.box_tool {

@@ -1,0 +1,26 @@
+// What is being untangled in the worker.
+import type { Client } from './client.js';
+import { Stepper, type Wait } from './solver.js';
+import type { Certificate, SolidCertificate } from './types.js';
+import type { UntangleInfo, UntangleResult, UntangleStep } from './untangle-types.js';
+
+/** A solid, or (with `Certificate`) triangles in their plane, being untangled in the worker. */
+export class Untangling<C extends SolidCertificate | Certificate = SolidCertificate> extends Stepper<UntangleStep> implements UntangleInfo {
+  readonly notes: string[];
+
+  /** @internal */
+  constructor(client: Client, generation: number, id: number, info: UntangleInfo, wait: Wait, signal: AbortSignal | undefined) {
+    super(client, generation, id, info, wait, signal);
+    this.notes = info.notes;
+  }
+
+  /** x̄, the primary solver's state, which may fold, n × 3. */
+  primaryPositions(): Promise<Float64Array> {
+    return this.call('primaryPositions');
+  }
+
+  /** The newest positions in double precision, with their certificate, and what stands in the way where elements are inverted. */
+  result(): Promise<UntangleResult<C>> {
+    return this.call('untangled') as Promise<UntangleResult<C>>;
+  }
+}

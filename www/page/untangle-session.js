@@ -1,0 +1,215 @@
+// What is being untangled: one body, one solver, and every part of every step. No DOM here.
+import { generate, invertedOf, problemOf, readPins } from './untangle-problems.js';
+
+/** Formats that may hold triangles instead of tetrahedra. */
+const SURFACES = ['obj', 'off', 'ply', 'stl', 'mesh', 'msh', 'vtk'];
+const SOLIDS = ['mesh', 'msh', 'vtk', 'node'];
+
+/**
+ * A body on the bench and its solver. A step of the solver comes as the parts it consists of, one after the other: local
+ * step, quadratic problem, the iterations of the polisher, outcome. `records` has the numbers of all of them.
+ */
+export class UntangleSession {
+  #foldfree;
+  #body;
+  #solver;
+  #generation = 0;
+  #queue = []; // parts of the newest step that were not shown yet
+  #reports = []; // of the steps
+  #last; // { result, primary, report, folded }: what the newest step led to; `folded`: inverted elements of `primary`, if known
+
+  records = [];
+  /** Name, settings and facts of the problem. */
+  problem = undefined;
+  /** What is known of the end: certificate, outcome, obstacles. */
+  result = undefined;
+
+  constructor(foldfree) {
+    this.#foldfree = foldfree;
+  }
+
+  get ready() {
+    return this.#solver !== undefined;
+  }
+
+  get body() {
+    return this.#body;
+  }
+
+  /** Whether it is triangles in a plane. */
+  get planar() {
+    return this.#body?.indices !== undefined;
+  }
+
+  get newest() {
+    return this.records.at(-1);
+  }
+
+  /** Whether all parts of the last step were shown. */
+  get finished() {
+    return this.#queue.length === 0 && this.newest !== undefined && this.newest.status !== 'running';
+  }
+
+  /** Reads a file: as a solid where its format can hold one, else as triangles. */
+  async #file({ name, format, bytes, elements }) {
+    if (SOLIDS.includes(format)) {
+      try {
+        return await this.#foldfree.solid(bytes, format, elements);
+      } catch (error) {
+        if (!SURFACES.includes(format)) throw error;
+        return this.#foldfree.mesh(bytes, format).catch(() => { throw error; });
+      }
+    }
+    if (!SURFACES.includes(format)) throw new Error(`${name} is no body`);
+    return this.#foldfree.mesh(bytes, format);
+  }
+
+  /** The body of a source, and what a person brought with it. */
+  async #read(source) {
+    if (!source.files) return { body: await generate(this.#foldfree, source), given: {} };
+    const [first, second] = source.files;
+    const body = await this.#file(first);
+    const given = {};
+    try {
+      const vertices = body.positions.length / 3;
+      if (source.pins) given.pins = readPins(source.pins.text, vertices, source.pins.name);
+      if (second) {
+        const other = await this.#file(second);
+        given.start = other.positions;
+        other.free();
+        if (given.start.length !== body.positions.length) {
+          throw new Error(`${second.name} has ${given.start.length / 3} vertices, ${first.name} ${vertices}`);
+        }
+      }
+    } catch (error) {
+      body.free();
+      throw error;
+    }
+    return { body, given };
+  }
+
+  /**
+   * Puts a problem on the bench; only when everything went well does the last one leave. Resolves with the start, or
+   * with undefined when a later call overtook this one.
+   */
+  async open({ source, held, start, energy }) {
+    const generation = ++this.#generation;
+    const same = this.#body !== undefined && this.problem?.source === source;
+    const { body, given } = same ? { body: this.#body, given: this.problem.given } : await this.#read(source);
+    let solver;
+    let made;
+    let known; // of the start
+    try {
+      made = problemOf(body, { held, start }, given);
+      solver = await this.#foldfree.untangle(body, { ...made, energy, primary: true, trace: true });
+      known = await solver.result();
+    } catch (error) {
+      solver?.free();
+      if (!same) body.free();
+      throw error;
+    }
+    if (generation !== this.#generation) {
+      solver.free();
+      if (!same) body.free();
+      return undefined;
+    }
+    this.#solver?.free();
+    if (!same) this.#body?.free();
+    [this.#body, this.#solver] = [body, solver];
+    this.problem = {
+      source, given, ...made, settings: { held, start, energy },
+      notes: [...body.notes, ...solver.notes], setupSeconds: solver.setupSeconds,
+    };
+    this.result = undefined;
+    [this.#queue, this.#reports] = [[], []];
+    const { positions } = solver.start;
+    // of what is flat floating point cannot tell: the start is counted exactly
+    const wrong = known.outcome.notPositive.length;
+    this.#last = { result: positions, primary: positions, report: { ...numbersOf(solver.start), inverted: wrong, smallest: known.outcome.smallestMeasure }, folded: wrong };
+    const first = this.#part('start', { trial: positions, inverted: [wrong, wrong, wrong], report: this.#last.report });
+    this.records = [first.record];
+    if (solver.start.status !== 'running') this.result = known;
+    return first;
+  }
+
+  /** The next part of a step; resolves with nothing when there is none. */
+  async step() {
+    const solver = this.#solver;
+    if (!solver || this.finished) return undefined;
+    if (this.#queue.length === 0) {
+      const step = await solver.step();
+      if (solver !== this.#solver) return undefined;
+      if (step.status !== 'running') {
+        const result = await solver.result();
+        if (solver !== this.#solver) return undefined;
+        this.result = result;
+      }
+      this.#reports.push(numbersOf(step));
+      this.#queue = this.#partsOf(step);
+    }
+    const part = this.#queue.shift();
+    this.records.push(part.record);
+    return part;
+  }
+
+  /** The parts of a step. What is handed out changes with the last of them. */
+  #partsOf(step) {
+    const { result, primary, report: before, folded = invertedOf(this.#body, primary) } = this.#last;
+    const { gini, trace } = step;
+    const report = numbersOf(step);
+    // Seconds of solving: the solver's own clock also runs while it waits for the next step.
+    report.seconds = before.seconds + step.phases.reduce((sum, phase) => sum + phase.milliseconds, 0) / 1000;
+    const [polished] = trace;
+    const of = gini.polish.length;
+    const now = { ...before, iteration: step.iteration, phases: step.phases, seconds: report.seconds, status: 'running' };
+    // until its outcome measures and η are those of before
+    const { smallestMeasure, leastOffset, reducedOffsets } = before.gini ?? { smallestMeasure: before.smallest, leastOffset: gini.firstOffset, reducedOffsets: 0 };
+    const meanwhile = { ...gini, smallestMeasure, leastOffset, reducedOffsets };
+    const common = { gini: meanwhile, of, report: now };
+    const parts = [
+      this.#part('local', { ...common, trial: primary, inverted: [folded, before.inverted, folded] }),
+      ...trace.map((state, k) => this.#part(k === 0 ? 'quadratic' : 'polish', {
+        ...common, k, trial: state.positions, zones: state.zones, violated: state.violated,
+        inverted: [state.inverted, before.inverted, polished.inverted], primary: polished.positions,
+      })),
+    ];
+    const last = trace.at(-1);
+    this.#last = { result: step.positions, primary: step.primary, report };
+    parts.push(this.#part('outcome', {
+      ...common, gini, k: of, report, trial: last.positions, zones: gini.accepted ? undefined : last.zones, violated: last.violated,
+      inverted: [last.inverted, report.inverted, polished.inverted], primary: polished.positions, result: step.positions,
+    }));
+    // until then what is handed out is what it was
+    for (const part of parts.slice(0, -1)) part.result = result;
+    return parts;
+  }
+
+  #part(kind, { trial, result = this.#last.result, primary = this.#last.primary, zones, report, gini, k = 0, of = 0, inverted, violated }) {
+    const count = zones?.reduce((most, zone) => Math.max(most, zone), 0) ?? 0;
+    const record = { ...report, part: kind, k, of, counts: inverted, inverted: inverted[0], violated, zones: count, gini };
+    return { record, status: record.status, iteration: record.iteration, trial, zones, result, primary };
+  }
+
+  /** A file of what is handed out. */
+  async file(format) {
+    const { positions } = await this.#solver.result();
+    return this.#body.write(format, positions);
+  }
+
+  /** Everything a person would want to plot elsewhere. */
+  async trace() {
+    const { source, settings, notes, setupSeconds, pins } = this.problem;
+    const { certificate, outcome, obstacles } = this.result ?? (await this.#solver.result());
+    return {
+      format: 'foldfree-trace', formatVersion: 1, foldfree: this.#foldfree.version,
+      problem: source.files ? { files: source.files.map(({ name }) => name) } : { body: source.body, size: source.size },
+      settings, pins: pins.length, notes, threads: this.#foldfree.threads, setupSeconds, iterations: this.#reports,
+      outcome, obstacles, certificate,
+    };
+  }
+}
+
+/** A step without its arrays. */
+function numbersOf({ positions, primary, trace, ...numbers }) {
+  return numbers;
+}

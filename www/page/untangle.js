@@ -1,0 +1,285 @@
+// The Untangle mode: a folded body, and the solver that leads it to a map without inverted elements, part by part.
+import { readAddress, writeAddress } from './address.js';
+import { proofOf } from './deform-facts.js';
+import { readUntangleFiles, save } from './files.js';
+import { isFigure } from './figures.js';
+import { Mode } from './mode.js';
+import { describe } from './notice.js';
+import { areaOf, relativeTo, volumeOf } from './relative.js';
+import { drawSight } from './sight.js';
+import { UntangleControls } from './untangle-controls.js';
+import { ENERGIES, HELD, STARTS } from './untangle-problems.js';
+import { UntangleSession } from './untangle-session.js';
+import { ending, number, whole } from './words.js';
+
+/** The states, in the order in which a part of a step counts their inverted elements. */
+const STATES = ['trial', 'result', 'primary'];
+
+/** What a part of a step is called. */
+const PARTS = {
+  start: () => 'the start',
+  local: () => 'local step',
+  quadratic: () => 'quadratic problem',
+  polish: ({ k, of }) => `polisher ${k} of ${of}`,
+  outcome: ({ gini }) => (gini.accepted ? 'handed out' : 'not handed out'),
+};
+
+export class Untangle extends Mode {
+  static accepts = '.mesh,.msh,.vtk,.node,.ele,.obj,.off,.ply,.stl,.txt,.gz';
+  static dropHere = 'Drop a solid, or flat triangles, to untangle: the body at rest, with its tangled start and a list of pins if you have them';
+  static label = 'A folded body in 3D, the body cut open, its violated constraints by the parts of the steps, and what the step did';
+  static first = 'shape'; // the view a phone shows
+  static views = { map: 'Cut', shape: 'Body', plot: 'Plot', inspector: 'Step' };
+  wanted = readAddress('untangle');
+  source = { body: this.wanted.body, size: this.wanted.size };
+  controls = new UntangleControls(this);
+  #good = { ...this.wanted };
+  #relative = (record) => record; // a record without units
+
+  constructor(page) {
+    super(page, 'untangle');
+  }
+
+  /** Nothing is prepared: the start is made by the solver's own shapes. */
+  async prepare() {
+    return this.records.length > 0;
+  }
+
+  async arrive(foldfree) {
+    this.session ??= new UntangleSession(foldfree);
+    this.controls.list(foldfree.solidShapes);
+    if (this.session.ready) return true;
+    const opened = await this.open(this.source);
+    if (opened && this.waiting) await this.catchUp();
+    else if (opened && this.wanted.steps) await this.steps(this.wanted.steps);
+    return opened;
+  }
+
+  /** Whether what is on the bench, or will be, is triangles in a plane. */
+  get planar() {
+    return this.session?.body ? this.session.planar : isFigure(this.source.body);
+  }
+
+  invitation() {
+    if (this.session.finished) return undefined; // there is nothing to try
+    const { inverted } = this.records[0];
+    const words = this.planar ? 'triangles' : 'tetrahedra';
+    const { source } = this;
+    const how = source.files ? '' : `${HELD[this.wanted.held].hint}. ${STARTS[this.wanted.start].hint}. `;
+    return { button: 'Untangle', text: `${how}${whole(inverted)} of ${whole(this.bench.tetrahedra)} ${words} are inverted or flat.` };
+  }
+
+  /** Puts `next` on the bench; on failure the bench stays as it is. */
+  async open(next = this.source, { busy = '' } = {}) {
+    this.pause();
+    const { session } = this;
+    const asked = { ...this.wanted };
+    const before = session.body;
+    let overtaken = false; // what came later says what is going on
+    if (busy) this.busy(busy);
+    try {
+      const { held, start, energy } = asked;
+      const first = await session.open({ source: next, held, start, energy });
+      if (!first) return (overtaken = true, false);
+      this.source = next;
+      if (session.body !== before) this.#lay();
+      this.clearNotice();
+      this.#begin(first);
+      this.remember();
+      this.#good = asked;
+      return true;
+    } catch (error) {
+      const name = next.name ?? next.body;
+      this.notice(next === this.source && session.ready ? 'The solver could not start' : `${name} was not opened`, describe(error));
+      Object.assign(this.wanted, this.#good);
+      if (this.records.length) this.show(this.shown, { quietly: true });
+      return false;
+    } finally {
+      if (!overtaken) {
+        this.busy('');
+        this.reflect();
+      }
+    }
+  }
+
+  /** Another body lies on the bench. */
+  #lay() {
+    const { body, planar } = this.session;
+    if (planar) this.bench.planar(body);
+    else this.bench.solid(body);
+    const measure = planar ? areaOf(body.positions, body.indices) : volumeOf(body.positions, body.tetrahedra);
+    this.#relative = relativeTo(1, Math.abs(measure));
+  }
+
+  #begin(first) {
+    const { session, wanted } = this;
+    const { pins, start } = session.problem;
+    this.bench.begin('gini', wanted.start, wanted.energy);
+    this.bench.lookAt(start);
+    this.bench.handles({ groups: pins.length ? [{ vertices: pins }] : [], selected: -1 });
+    this.#look();
+    this.push(first);
+    this.records = session.records;
+    this.show(0);
+    this.#facts();
+    this.invite();
+    if (session.finished) this.ended();
+  }
+
+  // ——— what is shown ———
+
+  readout(record) {
+    const { violated, zones } = record;
+    const inverted = record.counts[STATES.indexOf(this.wanted.state)];
+    const name = PARTS[record.part](record);
+    const where = record.part === 'start' ? name : `step ${record.iteration} · ${name}`;
+    const below = `${whole(violated ?? 0)} below η`;
+    const zoned = zones > 0 ? ` in ${whole(zones)} ${zones === 1 ? 'zone' : 'zones'}` : '';
+    const { energy } = this.#relative(record);
+    return {
+      ...record, inverted, where,
+      energyText: violated === undefined ? `energy ${number(energy)}` : below,
+      spoken: `${where.replace(' · ', ', ')}, ${violated === undefined ? '' : `${below}${zoned}, `}${inverted} inverted`,
+    };
+  }
+
+  push(part) {
+    this.bench.pushMoment({ ...this.#relative(part.record), trial: part.trial, zoneOf: part.zones, result: part.result, primary: part.primary });
+  }
+
+  ended() {
+    this.finish();
+    const { obstacles, outcome } = this.session.result;
+    if (this.session.newest.iteration === 0 && outcome.notPositive.length === 0) return this.notice('Nothing to do', 'Nothing is inverted in this start.', { plain: true });
+    if (outcome.notPositive.length > 0) return this.notice('Not everything came free', obstacles.join(' '), { plain: true });
+  }
+
+  finish() {
+    this.#facts();
+  }
+
+  #facts() {
+    const { session } = this;
+    const { problem, body, newest, result, planar } = session;
+    const elements = planar ? 'triangles' : 'tetrahedra';
+    const pairs = [
+      [planar ? 'figure' : 'solid', this.source.name ?? this.controls.title],
+      ['energy', ENERGIES[problem.settings.energy].title],
+      ['vertices', whole(body.positions.length / 3)],
+      [elements, whole(this.bench.tetrahedra)],
+      ['held', `${whole(problem.pins.length)} vertices`],
+      ['setup', `${number(1000 * problem.setupSeconds, 3)} ms`],
+      ['threads', String(this.page.foldfree.threads)],
+      ...problem.notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
+    ];
+    if (session.finished && result) {
+      const how = newest.status === 'stalled' ? 'no better state found' : ending(newest);
+      pairs.push(['ended', newest.iteration === 0 ? 'before the first step' : `${how} after ${newest.iteration} ${newest.iteration === 1 ? 'step' : 'steps'}`]);
+      pairs.push(...proofOf(result.certificate, planar));
+    }
+    this.bench.facts(pairs);
+  }
+
+  /** How the body is looked at: `field`, `cut`, `at`, `state`. */
+  look(key, value, { moving = false } = {}) {
+    this.wanted[key] = value;
+    this.#good[key] = value;
+    if (this.page.canvas) this.#look();
+    if (key === 'state' && this.records.length) this.show(this.shown);
+    if (!moving) this.remember();
+  }
+
+  #look() {
+    drawSight(this.bench, this.wanted);
+    this.bench.state(this.wanted.state);
+    this.controls.look();
+  }
+
+  /** The next state (S). */
+  nextState() {
+    this.look('state', STATES[(STATES.indexOf(this.wanted.state) + 1) % STATES.length]);
+  }
+
+  // ——— what people do ———
+
+  async reset() {
+    if (!this.whenReady(() => this.reset())) return;
+    await this.open();
+  }
+
+  async change(key, value) {
+    this.wanted[key] = value;
+    this.reflect();
+    if (!this.whenReady(() => this.open())) return;
+    await this.open();
+  }
+
+  /** Picks the energy that a number key stands for. */
+  pickMethod(index) {
+    const [name, { planar } = {}] = Object.entries(ENERGIES)[index] ?? [];
+    if (name && (planar || !this.planar)) this.change('energy', name);
+  }
+
+  async changeBody(body, size) {
+    const next = { body, size };
+    Object.assign(this.wanted, next);
+    if (isFigure(body) && !ENERGIES[this.wanted.energy].planar) this.wanted.energy = 'arap';
+    if (!this.whenReady(() => this.open(next))) return;
+    await this.open(next, { busy: size > 10_000 ? 'Building the body' : '' });
+  }
+
+  async openFiles(files) {
+    if (!this.whenReady(() => this.openFiles(files))) return;
+    this.busy(`Reading ${files[0].name}`);
+    let next;
+    try {
+      next = await readUntangleFiles(files);
+    } catch (error) {
+      this.busy('');
+      return this.notice(`${files[0].name} was not opened`, describe(error));
+    }
+    // a file of triangles takes no energy of solids; one of them all take
+    this.wanted.energy = 'arap';
+    if (BENT.includes(this.wanted.held)) this.wanted.held = 'outside';
+    await this.open(next, { busy: `Reading ${next.name}` });
+  }
+
+  reflect() {
+    this.controls.reflect();
+  }
+
+  enter() {
+    super.enter();
+    this.reflect(); // colours and cut are shared with other modes
+  }
+
+  /** Writes what is on the bench into the address; of a file only how it is solved and looked at. */
+  remember(extra = {}) {
+    if (!this.active) return;
+    const { wanted, source } = this;
+    const body = source.files ? { body: undefined, size: undefined } : { body: source.body, size: source.size };
+    writeAddress('untangle', { ...wanted, steps: undefined, ...body, ...(!source.files && extra) });
+  }
+
+  /** What a link does not carry. */
+  get notShared() {
+    return this.source.files ? 'It has the solver and its settings; the files stay with you.' : '';
+  }
+
+  get exports() {
+    const name = (this.source.name ?? this.source.body).replace(/\.[a-z]+(\.gz)?$/i, '');
+    const { session } = this;
+    const format = session.planar ? 'obj' : 'mesh';
+    return {
+      'export-solid': async () => save(await session.file(format), `${name}-untangled.${format}`, 'text/plain'),
+      'export-trace': async () => save(`${JSON.stringify(await session.trace(), null, 1)}\n`, `${name}-untangled.json`, 'application/json'),
+    };
+  }
+
+  connect() {
+    this.controls.connect();
+  }
+}
+
+/** What is held otherwise than a person's file has it. */
+const BENT = ['twisted', 'bent'];
