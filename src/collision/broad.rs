@@ -2,7 +2,7 @@
 
 use super::Boundary;
 use super::boxes::Bounds;
-use super::ccd::{Pair, time_of_impact};
+use super::ccd::{Impact, Pair, impact};
 use super::separation::Four;
 use super::tree::Tree;
 use crate::parallel;
@@ -34,7 +34,7 @@ impl Candidate {
         }
     }
 
-    /// Its four vertices, in the order of [`time_of_impact`].
+    /// Its four vertices, in the order of [`impact`].
     pub fn vertices<const D: usize>(&self, boundary: &Boundary<D>) -> [u32; 4] {
         match *self {
             Candidate::VertexFacet { vertex, facet } => {
@@ -48,18 +48,18 @@ impl Candidate {
         }
     }
 
-    /// [`time_of_impact`] of this pair.
-    pub fn time_of_impact<const D: usize>(
+    /// [`impact`] of this pair.
+    pub fn impact<const D: usize>(
         &self,
         boundary: &Boundary<D>,
         from: &[[f64; D]],
         to: &[[f64; D]],
         gap: f64,
-    ) -> Option<f64> {
+    ) -> Option<Impact<D>> {
         let vertices = self.vertices(boundary);
         let start: Four<D> = vertices.map(|v| from[v as usize]);
         let end: Four<D> = vertices.map(|v| to[v as usize]);
-        time_of_impact(self.pair(), &start, &end, gap)
+        impact(self.pair(), &start, &end, gap)
     }
 }
 
@@ -176,7 +176,7 @@ impl<const D: usize> BroadPhase<D> {
         found
     }
 
-    /// The candidates for which `matters` holds that meet, with their times of impact, sorted by pair. Never more
+    /// The candidates for which `matters` holds that meet, and how, sorted by pair. Never more
     /// than a block of candidates is kept.
     pub fn collisions(
         &mut self,
@@ -185,17 +185,17 @@ impl<const D: usize> BroadPhase<D> {
         to: &[[f64; D]],
         gap: f64,
         matters: impl Fn(&Candidate) -> bool,
-    ) -> Vec<(Candidate, f64)> {
+    ) -> Vec<(Candidate, Impact<D>)> {
         self.fit(boundary, from, to, gap);
         let mut found = Vec::new();
-        let mut block: Vec<(Candidate, Option<f64>)> = Vec::new();
-        let mut decide = |block: &mut Vec<(Candidate, Option<f64>)>| {
+        let mut block: Vec<(Candidate, Option<Impact<D>>)> = Vec::new();
+        let mut decide = |block: &mut Vec<(Candidate, Option<Impact<D>>)>| {
             parallel::for_each_chunk(block, CHUNK, |_, block| {
-                for (candidate, time) in block {
-                    *time = candidate.time_of_impact(boundary, from, to, gap);
+                for (candidate, impact) in block {
+                    *impact = candidate.impact(boundary, from, to, gap);
                 }
             });
-            found.extend(block.drain(..).filter_map(|(c, time)| Some((c, time?))));
+            found.extend(block.drain(..).filter_map(|(c, impact)| Some((c, impact?))));
         };
         self.visit(boundary, &mut |candidate| {
             if matters(&candidate) {
@@ -297,9 +297,9 @@ mod tests {
             assert!(expected.len() > 20);
             assert_eq!(broad.candidates(&boundary, &from, &to, gap), expected);
             let hits = broad.collisions(&boundary, &from, &to, gap, |_| true);
-            let one_by_one: Vec<(Candidate, f64)> = expected
+            let one_by_one: Vec<(Candidate, Impact<D>)> = expected
                 .iter()
-                .filter_map(|c| Some((*c, c.time_of_impact(&boundary, &from, &to, gap)?)))
+                .filter_map(|c| Some((*c, c.impact(&boundary, &from, &to, gap)?)))
                 .collect();
             assert_eq!(hits, one_by_one);
         }

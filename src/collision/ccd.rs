@@ -23,6 +23,15 @@ pub enum Pair {
     EdgeEdge,
 }
 
+/// How two primitives meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impact<const D: usize> {
+    /// When, or before.
+    pub time: f64,
+    /// The unit normal along which they are apart until then, from the second to the first; 0 if there is none.
+    pub normal: [f64; D],
+}
+
 /// Most steps. What needs more counts as meeting at the time that was reached.
 const MOST_STEPS: usize = 128;
 
@@ -46,6 +55,16 @@ pub fn time_of_impact<const D: usize>(
     end: &Four<D>,
     gap: f64,
 ) -> Option<f64> {
+    impact(pair, start, end, gap).map(|impact| impact.time)
+}
+
+/// The same with the normal.
+pub fn impact<const D: usize>(
+    pair: Pair,
+    start: &Four<D>,
+    end: &Four<D>,
+    gap: f64,
+) -> Option<Impact<D>> {
     match pair {
         Pair::VertexFace => advance::<D, 1>(start, end, gap),
         Pair::EdgeEdge => advance::<D, 2>(start, end, gap),
@@ -56,7 +75,7 @@ fn advance<const D: usize, const SPLIT: usize>(
     start: &Four<D>,
     end: &Four<D>,
     gap: f64,
-) -> Option<f64> {
+) -> Option<Impact<D>> {
     // seen from one of the points, so that what is far from the origin keeps its precision
     let origin = start[0];
     let from = start.map(|p| sub(p, origin));
@@ -66,31 +85,32 @@ fn advance<const D: usize, const SPLIT: usize>(
     let mut size = 0.0f64;
     for x in coordinates {
         if !x.is_finite() {
-            return Some(0.0);
+            let normal = [0.0; D];
+            return Some(Impact { time: 0.0, normal });
         }
         size = size.max(x.abs());
     }
     let rounding = ROUNDING * size;
     let mut close = 2.0 * rounding;
-    let mut time = 0.0;
+    let (mut time, mut normal) = (0.0, [0.0; D]);
     for step in 0..MOST_STEPS {
         let now: Four<D> = std::array::from_fn(|i| add_scaled(from[i], time, velocity[i]));
         let separation = separate::<D, SPLIT>(&now);
+        normal = separation.normal;
         if step == 0 {
             close = close.max(gap.min(CLOSER * separation.width));
         }
         if !(separation.width > close) {
-            return Some(time);
+            return Some(Impact { time, normal });
         }
         // until one of the differences of corners has only this much of the separation left
         let left = 0.5 * close;
-        let n = separation.normal;
         let mut wait = f64::INFINITY;
         for i in 0..SPLIT {
             for j in SPLIT..4 {
-                let approach = -dot(n, sub(velocity[i], velocity[j]));
+                let approach = -dot(normal, sub(velocity[i], velocity[j]));
                 if approach > 0.0 {
-                    wait = wait.min((dot(n, sub(now[i], now[j])) - left) / approach);
+                    wait = wait.min((dot(normal, sub(now[i], now[j])) - left) / approach);
                 }
             }
         }
@@ -99,7 +119,7 @@ fn advance<const D: usize, const SPLIT: usize>(
             return None;
         }
     }
-    Some(time)
+    Some(Impact { time, normal })
 }
 
 #[cfg(test)]

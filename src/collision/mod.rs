@@ -22,6 +22,6 @@ pub(crate) mod vector;
 
 pub use boundary::{Boundary, BoundaryError};
 pub use broad::{BroadPhase, Candidate};
-pub use ccd::{Pair, time_of_impact};
+pub use ccd::{Impact, Pair, impact, time_of_impact};
 pub use intersection::intersections;
 pub use overlap::overlaps;
