@@ -9,7 +9,7 @@ mod ccd_oracle;
 use ccd_oracle::queries::{Kind, Whole, query};
 use dashu_ratio::RBig;
 use foldfree::collision::time_of_impact;
-use std::time::Instant;
+use foldfree::optim::Stopwatch;
 
 fn main() {
     let count = std::env::args().nth(1).and_then(|n| n.parse().ok());
@@ -22,7 +22,7 @@ fn main() {
     let (mut missed_in_all, mut wrong_in_all) = (0, 0);
     for kind in Kind::ALL {
         let motions: Vec<_> = (0..each).map(|_| query(kind, &mut random)).collect();
-        let clock = Instant::now();
+        let clock = Stopwatch::start();
         let answers: Vec<[Option<f64>; 2]> = motions
             .iter()
             .map(|m| {
@@ -37,7 +37,7 @@ fn main() {
                 })
             })
             .collect();
-        let nanoseconds = clock.elapsed().as_nanos() as usize / (2 * each);
+        let nanoseconds = (1e9 * clock.seconds()) as usize / (2 * each);
         let (mut meetings, mut missed, mut late, mut wrong) = (0, 0, 0, [0, 0]);
         for (m, answers) in motions.iter().zip(answers) {
             let exact = m.first_meeting();

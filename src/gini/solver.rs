@@ -312,7 +312,7 @@ impl<const D: usize> Gini<D> {
         };
         self.back_off();
         self.failures += 1;
-        if self.failures % PATIENCE == 0 {
+        if self.failures.is_multiple_of(3 * PATIENCE) {
             step.accepted = self.advance(free);
         }
         false
