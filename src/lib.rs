@@ -10,6 +10,7 @@
 //! See `ARCHITECTURE.md` for what lives where and why.
 
 pub mod certificate;
+pub mod collision;
 pub mod deformation;
 mod disjoint_sets;
 pub mod embedding;

@@ -41,6 +41,7 @@ pub use corners::CornerMap;
 pub use crossings::BoundaryCrossing;
 pub use predicates::{orientation, orientation_of_tetrahedron};
 pub use segments::CrossingKind;
+pub(crate) use segments::{meet, meet_beyond};
 pub use solid::SolidCertificate;
 
 use crate::Error;

@@ -36,7 +36,8 @@ enum Body {
 
 impl Untangling {
     /// Of tetrahedra. `start` has one position a vertex; pins are held there, or, where they have targets, at these;
-    /// targets of other vertices pull. A component without either is free.
+    /// targets of other vertices pull. A component without either is free. With [`GiniOptions::overlap`] pins with
+    /// targets begin where they start, and move there as soon as the way is free.
     ///
     /// # Errors
     /// [`MeshError`](crate::mesh::MeshError) for a rest shape that is none, [`BuildError`] for pins, targets, start
@@ -56,9 +57,10 @@ impl Untangling {
         if turned {
             notes.push("the mesh was inside out: all tetrahedra were turned".into());
         }
-        let prepared = Prepared::new(rest, start, pins, targets, 3, &mut notes)?;
+        let keep = options.overlap;
+        let prepared = Prepared::new(rest, start, pins, targets, (3, keep), &mut notes)?;
         let problem = prepared.problem(&shape);
-        let solver = Box::new(match material {
+        let mut solver = Box::new(match material {
             Material::NeoHookean { young, poisson } => {
                 Gini::new::<Solid, _>(problem, NeoHookean::new(young, poisson)?, *options)
             }
@@ -72,6 +74,9 @@ impl Untangling {
             Material::Dirichlet => Gini::new::<Solid, _>(problem, Dirichlet, *options),
             Material::StVenantKirchhoff { .. } => return Err(unknown_energy("solids").into()),
         }?);
+        if !prepared.moves.is_empty() {
+            solver.move_pins(&prepared.moves)?;
+        }
         Ok(Self {
             solver: Body::Solid(solver),
             notes,
@@ -102,9 +107,10 @@ impl Untangling {
         if turned {
             notes.push("the mesh was clockwise: all triangles were turned".into());
         }
-        let prepared = Prepared::new(rest, start, pins, targets, 2, &mut notes)?;
+        let keep = options.overlap;
+        let prepared = Prepared::new(rest, start, pins, targets, (2, keep), &mut notes)?;
         let problem = prepared.problem(&shape);
-        let solver = Box::new(match material {
+        let mut solver = Box::new(match material {
             Material::Arap => Gini::new::<Plane, _>(problem, Arap, *options),
             Material::SymmetricDirichlet => {
                 Gini::new::<Plane, _>(problem, SymmetricDirichlet, *options)
@@ -112,6 +118,9 @@ impl Untangling {
             Material::Dirichlet => Gini::new::<Plane, _>(problem, Dirichlet, *options),
             _ => return Err(unknown_energy("triangles in a plane").into()),
         }?);
+        if !prepared.moves.is_empty() {
+            solver.move_pins(&in_plane(&prepared.moves))?;
+        }
         Ok(Self {
             solver: Body::Plane(solver),
             notes,
@@ -123,6 +132,18 @@ impl Untangling {
                 simplices: shape.vertices.as_chunks::<3>().0.to_vec(),
             }),
         })
+    }
+
+    /// With [`GiniOptions::overlap`]: has pinned vertices move to other points, and the run go on.
+    ///
+    /// # Errors
+    /// As [`Gini::move_pins`].
+    pub fn move_pins(&mut self, pins: &[(u32, DVec3)]) -> Result<(), BuildError> {
+        let pins: Vec<(u32, [f64; 3])> = pins.iter().map(|&(v, p)| (v, p.to_array())).collect();
+        match &mut self.solver {
+            Body::Plane(solver) => solver.move_pins(&in_plane(&pins)),
+            Body::Solid(solver) => solver.move_pins(&pins),
+        }
     }
 
     /// What is known of the newest positions.
@@ -232,6 +253,10 @@ impl Untangling {
     }
 }
 
+fn in_plane(pins: &[(u32, [f64; 3])]) -> Vec<(u32, [f64; 2])> {
+    pins.iter().map(|&(v, [x, y, _])| (v, [x, y])).collect()
+}
+
 fn unknown_energy(body: &str) -> BuildError {
     BuildError::InvalidOption {
         option: "energy",
@@ -244,6 +269,8 @@ struct Prepared {
     start: Vec<f64>,
     pins: Vec<u32>,
     springs: Vec<crate::optim::Spring>,
+    /// Where pins are yet to go.
+    moves: Vec<(u32, [f64; 3])>,
 }
 
 impl Prepared {
@@ -252,15 +279,17 @@ impl Prepared {
         start: &[DVec3],
         pins: &[u32],
         targets: &[Target],
-        dimension: usize,
+        (dimension, keep): (usize, bool),
         notes: &mut Vec<String>,
     ) -> Result<Self, BuildError> {
         let supports = Supports::new(rest, pins, notes)?;
         // relative stiffnesses: κ is the solver's option
-        let (moved, springs) = supports.split_free(targets, &vec![1.0; start.len()])?;
+        let (mut moves, springs) = supports.split_free(targets, &vec![1.0; start.len()])?;
         let mut positions = start.to_vec();
-        for (vertex, point) in moved {
-            positions[vertex as usize] = DVec3::from_array(point);
+        if !keep {
+            for (vertex, point) in moves.drain(..) {
+                positions[vertex as usize] = DVec3::from_array(point);
+            }
         }
         let points = positions.iter();
         Ok(Self {
@@ -269,6 +298,7 @@ impl Prepared {
                 .collect(),
             pins: supports.held(),
             springs,
+            moves,
         })
     }
 

@@ -120,7 +120,7 @@ pub fn global_step<const D: usize>(
         let mut slots = c.slots;
         let mut gradient = c.gradient_at(&corners(x, &slots));
         let square: f64 = gradient.iter().flatten().map(|g| g * g).sum();
-        if !(square > COLLAPSED * COLLAPSED * natural::<D>()) {
+        if c.skipped || !(square > COLLAPSED * COLLAPSED * natural::<D>()) {
             c.lambda = 0.0;
             continue;
         }

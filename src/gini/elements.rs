@@ -9,7 +9,7 @@ use crate::parallel;
 const CHUNK: usize = 4096;
 
 /// γ with which a zone begins (§5).
-const FIRST_DAMPING: f64 = 1e-3;
+pub const FIRST_DAMPING: f64 = 1e-3;
 
 /// All elements of the mesh.
 pub struct Elements<const D: usize> {
@@ -69,15 +69,19 @@ impl<const D: usize> Elements<D> {
 
     /// The constraint of an element.
     pub fn constraint(&self, e: usize) -> Constraint {
+        let law = Law::Measure {
+            scale: self.scale[e],
+        };
         Constraint {
             key: Key::Element(e as u32),
             slots: self.slots[e],
-            law: Law::Measure {
-                scale: self.scale[e],
-            },
+            law,
+            base: law,
             offset: self.offset(e),
             lambda: 0.0,
             damping: FIRST_DAMPING,
+            proximal: false,
+            skipped: false,
         }
     }
 

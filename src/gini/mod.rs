@@ -19,11 +19,17 @@
 //! and falls by itself in the zones in which the polisher ends with inverted elements: those ask for more measure than
 //! there is. The report says how far it fell.
 //!
-//! Of the paper this has all that concerns elements. Constraints are about at most four vertices and know what they are
-//! about ([`Key`]), so that contacts can join them.
+//! **Contacts** ([`GiniOptions::overlap`]): the boundary of x never meets itself. Before every iteration of the polisher
+//! continuous collision detection from x to x̂ adds the first contacts of vertices, faces and edges to 𝒞 (§6.1); x moves
+//! to x̂ only along a path on which nothing collides, and only if an exact test finds that the boundary of x̂ does not
+//! meet itself. Not in the paper: pairs that collide on the way, but are on the right side of each other again at its end,
+//! are held apart along the normal of their impact; where the polisher fails, x goes the part of the way that is free;
+//! and pins that move elsewhere then take a shorter stride. Constraints are about at most four vertices and know what they are about ([`Key`]).
 
 mod admm;
 mod constraint;
+mod contact;
+mod contacts;
 mod dual;
 mod elements;
 mod offsets;

@@ -9,13 +9,14 @@ const FACTOR: f64 = 0.25;
 const LEAST: f64 = 1e-9;
 
 impl<const D: usize> Elements<D> {
-    /// Reduces η of elements `chosen` by their values c. Returns how many were.
-    pub fn back_off(&mut self, chosen: impl Iterator<Item = usize>) -> usize {
+    /// Reduces η of elements `chosen` by their values c, not below `least`. Returns how many were.
+    pub fn back_off(&mut self, chosen: impl Iterator<Item = usize>, least: f64) -> usize {
+        let least = least.max(LEAST);
         let mut count = 0;
         for e in chosen {
             let offset = &mut self.relative_offset[e];
-            if *offset > LEAST {
-                *offset = (FACTOR * *offset).max(LEAST);
+            if *offset > least {
+                *offset = (FACTOR * *offset).max(least);
                 count += 1;
             }
         }

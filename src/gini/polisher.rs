@@ -51,10 +51,7 @@ pub fn polish<const D: usize>(
     x: &mut [[f64; D]],
 ) -> Polished {
     zones.build(constraints, movable);
-    let violated = |c: &u32| {
-        let constraint = &constraints[*c as usize];
-        constraint.value(x) < constraint.offset
-    };
+    let violated = |c: &u32| constraints[*c as usize].is_violated(x);
     let mut jobs: Vec<Job<D>> = (0..zones.len())
         .filter(|&z| zones.constraints(z).iter().any(violated))
         .map(|z| Job {
@@ -107,7 +104,7 @@ fn step<const D: usize>(
         let constraint = &constraints[c as usize];
         let p = corners(x, &constraint.slots);
         let error = constraint.value_at(&p) - constraint.offset;
-        if error < 0.0 {
+        if error < 0.0 && !constraint.skipped {
             job.before += 0.5 * error * error;
             let mut gradient = constraint.gradient_at(&p);
             let vertices = constraint.slots.map(|slot| zones.local(slot));
@@ -140,6 +137,9 @@ fn step<const D: usize>(
         let mut sum = 0.0;
         for &c in members {
             let constraint = &constraints[c as usize];
+            if constraint.skipped {
+                continue;
+            }
             let p = constraint.slots.map(|slot| match zones.local(slot) {
                 Zones::HELD => held[slot as usize],
                 local => x[local as usize],

@@ -45,11 +45,17 @@ impl ConstraintSet {
 
     /// Removes what the dual problem found inactive: λ = 0 (§6.2).
     pub fn remove_inactive(&mut self) {
-        self.list.retain(|constraint| constraint.lambda > 0.0);
+        self.retain(|constraint| constraint.lambda > 0.0);
+    }
+
+    /// Keeps some.
+    pub fn retain(&mut self, keep: impl Fn(&Constraint) -> bool) {
+        self.list.retain(keep);
         self.place.fill(NONE);
         for (place, constraint) in self.list.iter().enumerate() {
-            let Key::Element(e) = constraint.key;
-            self.place[e as usize] = place as u32;
+            if let Key::Element(e) = constraint.key {
+                self.place[e as usize] = place as u32;
+            }
         }
     }
 
@@ -62,8 +68,9 @@ impl ConstraintSet {
     /// Takes over the elements' offsets where they have changed.
     pub fn set_offsets<const D: usize>(&mut self, elements: &Elements<D>) {
         for constraint in &mut self.list {
-            let Key::Element(e) = constraint.key;
-            constraint.offset = elements.offset(e as usize);
+            if let Key::Element(e) = constraint.key {
+                constraint.offset = elements.offset(e as usize);
+            }
         }
     }
 }

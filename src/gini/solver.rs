@@ -1,10 +1,12 @@
 //! Algorithm 1.
 
 mod build;
+mod overlap;
 
 use super::GiniOptions;
 use super::admm::Admm;
 use super::constraint::Key;
+use super::contacts::Contacts;
 use super::dual::global_step;
 use super::elements::Elements;
 use super::polisher::polish;
@@ -32,6 +34,13 @@ pub struct Outcome {
     pub hopeless_measure: Option<f64>,
     /// The smallest signed measure of an element relative to its rest measure.
     pub smallest_measure: f64,
+    /// Where overlap counts: are the positions injective as a whole? Proven by exact predicates: no element is
+    /// inverted or degenerate, the boundary does not meet itself, and no part of it is inside another body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub globally_injective: Option<bool>,
+    /// Where overlap counts: pairs of boundary facets that meet, up to 1000. There are none, unless the solver is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub intersections: Option<usize>,
 }
 
 impl Outcome {
@@ -88,6 +97,20 @@ pub struct Gini<const D: usize> {
     floating: Vec<(Vec<u32>, [f64; D])>,
     pub(super) set: ConstraintSet,
     pub(super) zones: Zones,
+    /// Where overlap counts.
+    contacts: Option<Contacts<D>>,
+    /// Held slots, and where they are to be.
+    goals: Vec<(u32, [f64; D])>,
+    /// Are they there, at x?
+    arrived: bool,
+    /// Steps in a row in which the polisher has not reached a state that x could move to.
+    failures: usize,
+    /// What part of the rest of their way x̄ has them go at once.
+    stride: f64,
+    /// How far the last accepted step has moved a vertex at most, in units of the body's size.
+    moved: f64,
+    /// The body's size: the D-th root of its rest measure.
+    size: f64,
     /// x̄ of the paper, by slot,
     iterate: Vec<[f64; D]>,
     /// x,
@@ -121,6 +144,13 @@ const MOST_IDLE: usize = 15;
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
 
+/// Where overlap counts: steps in a row that x has not moved in after which pins take a shorter stride; after three
+/// times as many x goes part of its way.
+const PATIENCE: usize = 2;
+
+/// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
+const LEAST_WITH_CONTACTS: f64 = 1e-3;
+
 /// Iterations of the polisher in a row that do not lessen the number of inverted elements, after which it ends.
 const MOST_VAIN: usize = 12;
 
@@ -142,21 +172,28 @@ impl<const D: usize> Gini<D> {
         let local = Phase::new(PhaseKind::Local, prox, clock);
 
         let clock = Stopwatch::start();
+        if let Some(contacts) = &self.contacts {
+            contacts.skip(&mut self.set, &self.iterate);
+        }
         step.constraints = self.set.list.len();
         step.qp_iterations = self.primary_step();
         if !self.iterate.as_flattened().iter().all(|x| x.is_finite()) {
             self.begin_anew();
         }
         self.set.remove_inactive();
+        if let Some(contacts) = &self.contacts {
+            contacts.remove(&mut self.set, &self.x, &self.iterate);
+        }
         step.active = self.set.list.len();
         let global = Phase::new(PhaseKind::Global, step.qp_iterations as u32, clock);
 
         let clock = Stopwatch::start();
-        self.polish(&mut step);
+        let reached = self.polish(&mut step);
+        self.lead_pins(reached);
         let polished = step.polish.len() as u32;
         step.polish_milliseconds = clock.milliseconds();
         self.publish();
-        let done = self.is_injective();
+        let done = self.is_done();
         self.report.iteration = iteration;
         self.look();
         step.smallest_measure = self.smallest(&self.values);
@@ -170,14 +207,17 @@ impl<const D: usize> Gini<D> {
             self.options.max_iterations,
         );
         if self.report.status == Status::Running {
-            self.idle = if self.best.inverted < before {
+            let moves = self.contacts.is_some() && reached;
+            self.idle = if self.best.inverted < before || moves {
                 0
             } else {
                 self.idle + 1
             };
+            // where no element is inverted energy alone cannot help
+            let helps = self.contacts.is_none() || self.best.inverted > 0;
             if self.idle >= MOST_IDLE {
                 self.report.status = Status::Stalled;
-            } else if iteration.is_power_of_two() {
+            } else if iteration.is_power_of_two() && helps {
                 self.relax((RELAXATION * iteration).min(MOST_RELAXATION));
             }
         }
@@ -193,6 +233,7 @@ impl<const D: usize> Gini<D> {
     /// Lets the primary solver begin at the best state, without what it has learned.
     fn begin_anew(&mut self) {
         self.iterate.copy_from_slice(&self.best.x);
+        self.place_pins();
         self.begins_anew = true;
         self.set.clear();
     }
@@ -226,35 +267,40 @@ impl<const D: usize> Gini<D> {
         iterations
     }
 
-    /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1).
-    fn polish(&mut self, step: &mut GiniStep) {
+    /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1). Returns whether it is.
+    fn polish(&mut self, step: &mut GiniStep) -> bool {
         self.trial.copy_from_slice(&self.iterate);
         self.begin_trace();
+        if let Some(contacts) = &mut self.contacts {
+            contacts.forget();
+        }
         let (mut fewest, mut vain) = (usize::MAX, 0);
-        for count in 0..=self.options.max_polish_iterations {
+        let mut count = 0;
+        let free = loop {
             self.elements.values(&self.trial, &mut self.trial_values);
             let violated = self.set.add_elements(&self.elements, &self.trial_values);
             let inverted = self.count_inverted();
             if count == 0 {
                 step.inverted_iterate = inverted;
             }
-            self.remember(inverted);
-            self.trace_state(inverted, violated);
-            let better = |(&new, &old): (&f64, &f64)| new > 0.0 || new > old;
-            let values = self.trial_values.iter().zip(&self.values);
-            let movable = self.elements.movable.iter();
-            if values.zip(movable).all(|(v, &m)| !m || better(v)) {
-                self.x.copy_from_slice(&self.trial);
-                self.values.copy_from_slice(&self.trial_values);
-                step.accepted = true;
-                return;
+            let (collisions, first) = self.update_contacts(step);
+            if self.contacts.is_none() {
+                self.remember(inverted);
             }
-            (fewest, vain) = match inverted < fewest {
-                true => (inverted, 0),
+            self.trace_state(inverted, violated);
+            if collisions == 0 && self.all_better() && self.is_clear() {
+                self.accept(inverted);
+                step.accepted = true;
+                self.failures = 0;
+                return true;
+            }
+            let bad = inverted + collisions;
+            (fewest, vain) = match bad < fewest {
+                true => (bad, 0),
                 false => (fewest, vain + 1),
             };
             if count == self.options.max_polish_iterations || vain > MOST_VAIN {
-                break;
+                break first;
             }
             let polished = polish(
                 &mut self.set.list,
@@ -267,9 +313,16 @@ impl<const D: usize> Gini<D> {
                 inverted,
                 violated,
                 zones: polished.zones,
+                collisions,
             });
-        }
+            count += 1;
+        };
         self.back_off();
+        self.failures += 1;
+        if self.failures.is_multiple_of(3 * PATIENCE) {
+            step.accepted = self.advance(free);
+        }
+        false
     }
 
     /// Elements of x̂ that are inverted or flat, in floating point.
@@ -283,19 +336,33 @@ impl<const D: usize> Gini<D> {
     fn back_off(&mut self) {
         self.zones.build(&self.set.list, &self.movable);
         self.trace_zones();
-        let mut chosen = Vec::new();
+        let (mut elements, mut slots) = (Vec::new(), Vec::new());
         for z in 0..self.zones.len() {
             let members = self.zones.constraints(z).iter();
-            let places = members.map(|&c| {
-                let Key::Element(e) = self.set.list[c as usize].key;
-                e as usize
+            let members = members.map(|&c| &self.set.list[c as usize]);
+            let inverts = members.clone().any(|c| match c.key {
+                Key::Element(e) => !(self.trial_values[e as usize] > 0.0),
+                _ => false,
             });
-            if places.clone().any(|e| !(self.trial_values[e] > 0.0)) {
-                chosen.extend(places);
+            for c in members {
+                match c.key {
+                    Key::Element(e) if inverts => elements.push(e as usize),
+                    Key::Element(_) => {}
+                    _ if c.proximal => {}
+                    _ => slots.extend(c.slots),
+                }
             }
         }
-        self.elements.back_off(chosen.into_iter());
+        let least = match self.contacts {
+            Some(_) => LEAST_WITH_CONTACTS,
+            None => 0.0,
+        };
+        self.elements.back_off(elements.into_iter(), least);
         self.set.set_offsets(&self.elements);
+        if let Some(contacts) = &mut self.contacts {
+            contacts.back_off(slots.into_iter());
+            contacts.set_offsets(&mut self.set);
+        }
     }
 
     /// Keeps x̂ if none before had fewer inverted elements.
@@ -368,6 +435,8 @@ impl<const D: usize> Gini<D> {
             hopeless: self.hopeless.clone(),
             hopeless_measure: self.hopeless_measure,
             smallest_measure: self.smallest(&self.values),
+            globally_injective: self.proof(),
+            intersections: self.intersections(),
         }
     }
 

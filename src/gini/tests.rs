@@ -33,9 +33,12 @@ fn constraint(slots: [u32; 4], scale: f64, offset: f64) -> Constraint {
         key: Key::Element(0),
         slots,
         law: Law::Measure { scale },
+        base: Law::Measure { scale },
         offset,
         lambda: 0.0,
         damping: 1e-3,
+        proximal: false,
+        skipped: false,
     }
 }
 

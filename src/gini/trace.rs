@@ -54,18 +54,16 @@ impl<const D: usize> Gini<D> {
         let mut number = 0;
         for z in 0..self.zones.len() {
             let members = self.zones.constraints(z).iter();
-            let places = members.map(|&c| match self.set.list[c as usize].key {
-                Key::Element(place) => place as usize,
-            });
-            if !places
-                .clone()
-                .any(|e| self.trial_values[e] < self.elements.offset(e))
-            {
+            let members = members.map(|&c| &self.set.list[c as usize]);
+            if !members.clone().any(|c| c.is_violated(&self.trial)) {
                 continue;
             }
             number += 1;
-            for e in places {
-                state.zones[self.order[e] as usize] = number;
+            for constraint in members {
+                // contacts are no elements; those beside them are in the zone where they are violated, too
+                if let Key::Element(e) = constraint.key {
+                    state.zones[self.order[e as usize] as usize] = number;
+                }
             }
         }
     }

@@ -22,6 +22,15 @@ pub enum BuildError {
         "the start has {inverted} inverted or degenerate elements, the first of them element {first}: this method only keeps maps free of inversions that are so; untangle the start first"
     )]
     InvertedStart { inverted: usize, first: usize },
+    /// The boundary of the start meets itself. Facets by their vertices; of edges in the plane the second is given
+    /// twice. At most 1000 pairs.
+    #[error(
+        "the boundary of the start meets itself: {} pairs of facets, the first {:?} and {:?}; start from a surface without self-intersections, to which mean curvature flow leads", pairs.len(), pairs[0][0], pairs[0][1]
+    )]
+    IntersectingStart { pairs: Vec<[[u32; 3]; 2]> },
+    /// A facet of more than two elements, so that there is no boundary.
+    #[error("{elements} elements share the facet of vertices {vertices:?}")]
+    NonManifoldFacet { vertices: [u32; 3], elements: usize },
     /// An option is out of its range.
     #[error("option {option}: {what}")]
     InvalidOption { option: &'static str, what: String },
@@ -49,6 +58,8 @@ impl BuildError {
             BuildError::NotInjectiveStart { .. } | BuildError::InvertedStart { .. } => {
                 "not-injective-start"
             }
+            BuildError::IntersectingStart { .. } => "intersecting-start",
+            BuildError::NonManifoldFacet { .. } => "non-manifold-facet",
             BuildError::InvalidOption { .. } => "invalid-option",
             BuildError::WrongLength { .. } => "wrong-length",
             BuildError::NotPositiveDefinite { .. } => "not-positive-definite",

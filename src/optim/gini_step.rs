@@ -11,6 +11,9 @@ pub struct PolishStep {
     pub violated: usize,
     /// Zones of constraints that it worked on.
     pub zones: usize,
+    /// Pairs of the boundary that collide between x and x̂ before it, where overlap counts.
+    #[serde(default)]
+    pub collisions: usize,
 }
 
 /// What a step did. Measures are relative to those at rest.
@@ -40,4 +43,10 @@ pub struct GiniStep {
     pub first_offset: f64,
     /// Elements whose η is smaller than that.
     pub reduced_offsets: usize,
+    /// Contacts among the constraints when the polisher ended, where overlap counts.
+    #[serde(default)]
+    pub contacts: usize,
+    /// How long finding collisions took, in milliseconds; part of `polish_milliseconds`.
+    #[serde(default)]
+    pub collision_milliseconds: f64,
 }

@@ -46,9 +46,14 @@ pub struct Untangle {
     /// Hold the vertices of --targets at their points instead of pulling at them.
     #[arg(long, requires = "targets")]
     pub hard: bool,
-    /// How hard targets pull, relative to how hard the body holds on to the vertex it holds on to most.
-    #[arg(long, value_name = "K", default_value_t = GiniOptions::default().target_stiffness, value_parser = positive)]
-    pub target_stiffness: f64,
+    /// Keep the boundary from passing through itself or through other bodies. That of INIT must not meet itself; pins
+    /// with targets move there while the way is free.
+    #[arg(long)]
+    pub overlap: bool,
+    /// How hard targets pull, relative to how hard the body holds on to the vertex it holds on to most: 1, with
+    /// --overlap 1e-5.
+    #[arg(long, value_name = "K", value_parser = positive)]
+    pub target_stiffness: Option<f64>,
     /// What is kept low on the way; the neo-Hookean ones are for solids.
     #[arg(long, default_value = ENERGIES[0], value_parser = PossibleValuesParser::new(ENERGIES))]
     pub energy: String,
@@ -216,10 +221,14 @@ impl Untangle {
     }
 
     fn options(&self) -> GiniOptions {
+        let defaults = match self.overlap {
+            true => GiniOptions::overlap(),
+            false => GiniOptions::default(),
+        };
         GiniOptions {
-            target_stiffness: self.target_stiffness,
+            target_stiffness: self.target_stiffness.unwrap_or(defaults.target_stiffness),
             max_iterations: self.iterations,
-            ..Default::default()
+            ..defaults
         }
     }
 
@@ -256,6 +265,13 @@ impl Untangle {
                 outcome.not_positive.len(),
                 outcome.smallest_measure,
             ));
+            match outcome.globally_injective {
+                Some(true) => {
+                    say("No two points of the bodies have the same image (proven exactly).")
+                }
+                Some(false) => say("Not proven injective as a whole."),
+                None => {}
+            }
             outcome.obstacles().iter().for_each(|words| say(words));
             say(&words);
         }

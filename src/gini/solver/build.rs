@@ -1,9 +1,11 @@
 //! What is done once.
 
 use super::{Best, Gini};
+use crate::collision::Boundary;
 use crate::energy::Energy;
-use crate::geometry::Elimination;
+use crate::geometry::{Elimination, RestShape};
 use crate::gini::admm::{Admm, Body};
+use crate::gini::contacts::Contacts;
 use crate::gini::elements::Elements;
 use crate::gini::problem::{held_measure, not_positive};
 use crate::gini::set::ConstraintSet;
@@ -95,6 +97,13 @@ impl<const D: usize> Gini<D> {
             problem.start,
             &external,
         )?;
+        let size = at_rest.powf(1.0 / D as f64);
+        let contacts = match options.overlap {
+            true => Some(build_contacts(problem.rest, &slot, &x, &options)?),
+            false => None,
+        };
+        let goals = (0..n as u32).filter(|&s| held[s as usize]);
+        let goals = goals.map(|s| (s, x[s as usize])).collect();
         let mut values = vec![0.0; elements.len()];
         elements.values(&x, &mut values);
         let mut set = ConstraintSet::new(elements.len());
@@ -112,6 +121,13 @@ impl<const D: usize> Gini<D> {
             floating: floating.collect(),
             set,
             zones: Zones::new(n),
+            contacts,
+            goals,
+            arrived: true,
+            stride: 1.0,
+            failures: 0,
+            moved: f64::INFINITY,
+            size,
             iterate: x.clone(),
             trial: x.clone(),
             trial_values: values.clone(),
@@ -142,7 +158,7 @@ impl<const D: usize> Gini<D> {
     }
 
     /// The status of the start: there already, or out of reach of any map with these pins.
-    fn judge(&mut self) {
+    pub(super) fn judge(&mut self) {
         let inverted = not_positive(D, &self.corners, &self.positions);
         let mut is_movable = vec![true; self.order.len()];
         for (place, &e) in self.order.iter().enumerate() {
@@ -151,10 +167,43 @@ impl<const D: usize> Gini<D> {
         let hopeless = inverted.iter().filter(|&&e| !is_movable[e as usize]);
         self.hopeless = hopeless.copied().collect();
         self.report.status = match () {
-            _ if inverted.is_empty() => Status::Converged(Criterion::Injective),
+            _ if inverted.is_empty() && self.is_final() => Status::Converged(Criterion::Injective),
             _ if !self.hopeless.is_empty() || self.hopeless_measure.is_some() => Status::Stalled,
             _ if self.options.max_iterations == 0 => Status::MaxIterations,
             () => Status::Running,
         };
     }
+}
+
+/// Facets of the start that meet and are named in the error.
+const LISTED: usize = 1000;
+
+/// The boundary and its contacts; an error if it meets itself at the start.
+fn build_contacts<const D: usize>(
+    rest: &RestShape,
+    slot: &[u32],
+    x: &[[f64; D]],
+    options: &GiniOptions,
+) -> Result<Contacts<D>, BuildError> {
+    let elements: Vec<u32> = rest.vertices.iter().map(|&v| slot[v as usize]).collect();
+    let mut vertex = vec![0; slot.len()];
+    (0..).zip(slot).for_each(|(v, &s)| vertex[s as usize] = v);
+    let boundary = Boundary::<D>::new(&elements).map_err(|e| BuildError::NonManifoldFacet {
+        vertices: e.vertices.map(|s| vertex[s as usize]),
+        elements: e.elements,
+    })?;
+    let measure: f64 = rest.measure.iter().sum();
+    let root = |measure: f64| measure.powf(1.0 / D as f64);
+    let size = root(measure).min(100.0 * root(measure / rest.len() as f64));
+    let mut contacts = Contacts::new(boundary, elements, x.len(), options.contact_offset * size);
+    let meeting = contacts.intersections(x, LISTED);
+    if !meeting.is_empty() {
+        let facet = |f: u32| {
+            let facet = contacts.facets()[f as usize];
+            std::array::from_fn(|i| vertex[facet[i.min(D - 1)] as usize])
+        };
+        let pairs = meeting.iter().map(|pair| pair.map(facet)).collect();
+        return Err(BuildError::IntersectingStart { pairs });
+    }
+    Ok(contacts)
 }

@@ -1,0 +1,201 @@
+//! What is different where the boundary must not pass through itself.
+
+use super::{Gini, build};
+use crate::gini::problem::not_positive;
+use crate::optim::{BuildError, GiniStep, Status, Stopwatch};
+
+/// What part of the way that is free is taken, and how often half of it is tried.
+const SAFE: f64 = 0.8;
+const MOST_HALVINGS: usize = 5;
+
+/// Ways that are not worth it, in units of the body's size.
+const LEAST_WAY: f64 = 1e-4;
+
+/// The least part of their way that pins go at once.
+const LEAST_STRIDE: f64 = 1.0 / 128.0;
+
+impl<const D: usize> Gini<D> {
+    /// Has pinned vertices move elsewhere, hard: x̄ has them there at once, x stays where it is until the way there is
+    /// free. The run goes on, with all its steps anew.
+    ///
+    /// # Errors
+    /// `InvalidOption` without [`crate::gini::GiniOptions::overlap`], for a vertex that is not pinned, and for a
+    /// position that is not finite.
+    pub fn move_pins(&mut self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
+        let wrong = |what: String| {
+            Err(BuildError::InvalidOption {
+                option: "pins",
+                what,
+            })
+        };
+        if self.contacts.is_none() {
+            return wrong("move only where overlap counts".into());
+        }
+        for &(vertex, position) in pins {
+            let slot = self.slot.get(vertex as usize);
+            if slot.is_none_or(|&s| self.movable[s as usize]) {
+                return wrong(format!("vertex {vertex} is not pinned"));
+            }
+            if !position.iter().all(|x| x.is_finite()) {
+                return wrong(format!("vertex {vertex} would not be finite"));
+            }
+        }
+        for &(vertex, position) in pins {
+            let slot = self.slot[vertex as usize];
+            if let Ok(place) = self.goals.binary_search_by_key(&slot, |goal| goal.0) {
+                self.goals[place].1 = position;
+            }
+        }
+        self.stride = 1.0;
+        self.failures = 0;
+        self.place_pins();
+        self.arrived = self.goals.iter().all(|&(s, p)| self.x[s as usize] == p);
+        self.moved = f64::INFINITY;
+        self.begins_anew = true;
+        self.idle = 0;
+        self.report.iteration = 0;
+        self.report.status = match self.options.max_iterations {
+            0 => Status::MaxIterations,
+            _ => Status::Running,
+        };
+        Ok(())
+    }
+
+    /// Puts the pins of x̄ on their way from x.
+    pub(super) fn place_pins(&mut self) {
+        for &(slot, goal) in &self.goals {
+            let slot = slot as usize;
+            self.iterate[slot] = match self.stride {
+                1.0 => goal,
+                part => {
+                    std::array::from_fn(|i| self.x[slot][i] + part * (goal[i] - self.x[slot][i]))
+                }
+            };
+        }
+    }
+
+    /// Where pins are on their way: shorter ones from x if x̂ has not been `reached`, longer ones if it has.
+    pub(super) fn lead_pins(&mut self, reached: bool) {
+        if self.arrived || self.contacts.is_none() {
+            return;
+        }
+        if reached {
+            self.stride = (2.0 * self.stride).min(1.0);
+            self.place_pins();
+        } else if self.failures.is_multiple_of(super::PATIENCE) {
+            self.stride = (0.5 * self.stride).max(LEAST_STRIDE);
+            self.begin_anew();
+        }
+    }
+
+    /// Brings the contacts up to date; returns how many pairs collide between x and x̂, and when the first does.
+    pub(super) fn update_contacts(&mut self, step: &mut GiniStep) -> (usize, f64) {
+        let Some(contacts) = &mut self.contacts else {
+            return (0, 1.0);
+        };
+        let clock = Stopwatch::start();
+        let collisions = contacts.update(&mut self.set, &self.x, &self.trial, &self.movable);
+        step.collision_milliseconds += clock.milliseconds();
+        step.contacts = self.set.list.iter().filter(|c| c.key.is_contact()).count();
+        collisions
+    }
+
+    /// Where the polisher has failed: x goes as far towards x̂ as nothing collides before the time `first`, if that is
+    /// worth it. Pins that move get there by and by, and the next way is shorter. Returns whether it did.
+    pub(super) fn advance(&mut self, first: f64) -> bool {
+        if self.contacts.is_none() {
+            return false;
+        }
+        let to = self.trial.clone();
+        let mut part = SAFE * first;
+        for _ in 0..MOST_HALVINGS {
+            for (trial, (x, to)) in self.trial.iter_mut().zip(self.x.iter().zip(&to)) {
+                *trial = std::array::from_fn(|i| x[i] + part * (to[i] - x[i]));
+            }
+            self.elements.values(&self.trial, &mut self.trial_values);
+            if self.way(&self.trial) < LEAST_WAY * self.size {
+                return false;
+            }
+            if self.all_better() && self.is_clear() {
+                self.accept(self.count_inverted());
+                return true;
+            }
+            part *= 0.5;
+        }
+        false
+    }
+
+    /// How far the vertex that is farthest from x is.
+    fn way(&self, to: &[[f64; D]]) -> f64 {
+        let change = |(a, b): (&[f64; D], &[f64; D])| {
+            let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+            squares.sum::<f64>()
+        };
+        self.x.iter().zip(to).map(change).fold(0.0, f64::max).sqrt()
+    }
+
+    /// Is every element that is inverted at x̂ better there than at x?
+    pub(super) fn all_better(&self) -> bool {
+        let better = |(&new, &old): (&f64, &f64)| new > 0.0 || new > old;
+        let values = self.trial_values.iter().zip(&self.values);
+        let movable = self.elements.movable.iter();
+        values.zip(movable).all(|(v, &m)| !m || better(v))
+    }
+
+    /// Does the boundary of x̂ not meet itself? Exact. True where overlap does not count.
+    pub(super) fn is_clear(&mut self) -> bool {
+        let contacts = self.contacts.as_mut();
+        contacts.is_none_or(|contacts| contacts.intersections(&self.trial, 1).is_empty())
+    }
+
+    /// Moves x to x̂.
+    pub(super) fn accept(&mut self, inverted: usize) {
+        if self.contacts.is_some() {
+            self.moved = self.way(&self.trial) / self.size;
+            let trial = &self.trial;
+            self.arrived = self.goals.iter().all(|&(s, p)| trial[s as usize] == p);
+            // contacts push what floats
+            for (slots, centroid) in &mut self.floating {
+                *centroid = build::centroid(slots, &self.trial);
+            }
+            self.best.inverted = inverted;
+            self.best.smallest = self.smallest(&self.trial_values);
+            self.best.x.copy_from_slice(&self.trial);
+        }
+        self.x.copy_from_slice(&self.trial);
+        self.values.copy_from_slice(&self.trial_values);
+    }
+
+    /// May x be the last state, if it is injective?
+    pub(super) fn is_final(&self) -> bool {
+        self.arrived
+            && (self.contacts.is_none()
+                || self.moved <= self.options.settle
+                || self.options.settle == 0.0)
+    }
+
+    /// Is the run over?
+    pub(super) fn is_done(&self) -> bool {
+        self.is_final() && self.is_injective() && self.is_disjoint()
+    }
+
+    /// No part of the boundary inside another body.
+    fn is_disjoint(&self) -> bool {
+        let contacts = self.contacts.as_ref();
+        contacts.is_none_or(|contacts| contacts.overlaps(&self.x).is_empty())
+    }
+
+    /// Where overlap counts: is x injective as a whole?
+    pub(super) fn proof(&self) -> Option<bool> {
+        self.contacts.as_ref()?;
+        let fine = self.intersections() == Some(0)
+            && not_positive(D, &self.corners, &self.positions).is_empty()
+            && self.is_disjoint();
+        Some(fine)
+    }
+
+    /// Where overlap counts: pairs of facets of x that meet.
+    pub(super) fn intersections(&self) -> Option<usize> {
+        Some(self.contacts.as_ref()?.meeting(&self.x, 1000).len())
+    }
+}

@@ -1,0 +1,297 @@
+//! Bodies that keep from passing through themselves and each other: no accepted state has a boundary that meets
+//! itself, and the last one is injective as a whole, by exact predicates.
+
+mod overlap_problems;
+
+use foldfree::Error;
+use foldfree::certificate::{Certificate, SolidCertificate};
+use foldfree::collision::{Boundary, BroadPhase, intersections};
+use foldfree::deformation::{Material, Target, Untangling};
+use foldfree::gini::GiniOptions;
+use foldfree::mesh::{SimplicialMesh, SolidMesh};
+use foldfree::optim::{BuildError, Criterion, Status};
+use glam::{DVec2, DVec3};
+use overlap_problems::*;
+
+const INJECTIVE: Status = Status::Converged(Criterion::Injective);
+
+fn options() -> GiniOptions {
+    GiniOptions {
+        settle: 0.0,
+        ..GiniOptions::overlap()
+    }
+}
+
+/// Pairs of boundary faces that meet; written here once more, from the mesh alone.
+fn meeting(mesh: &SolidMesh, positions: &[DVec3]) -> usize {
+    let boundary = Boundary::<3>::new(mesh.simplices.as_flattened()).expect("a manifold");
+    let x: Vec<[f64; 3]> = positions.iter().map(|p| p.to_array()).collect();
+    intersections(&boundary, &x, &mut BroadPhase::default(), 100).len()
+}
+
+/// Runs until the status is not running, looking at every accepted state. Returns the most contacts there were.
+fn run(u: &mut Untangling) -> usize {
+    let mut contacts = 0;
+    while u.solver().status() == Status::Running {
+        let report = u.step().expect("a step");
+        contacts = contacts.max(report.gini.map_or(0, |g| g.contacts));
+        assert_eq!(u.outcome().intersections, Some(0));
+    }
+    contacts
+}
+
+/// Makes all moves. Returns the most contacts there were.
+fn follow<const K: usize>(problem: &Moves<K>, u: &mut Untangling) -> usize {
+    let mut contacts = 0;
+    for (k, pins) in problem.moves.iter().enumerate() {
+        u.move_pins(pins).expect("pins");
+        contacts = contacts.max(run(u));
+        assert_eq!(
+            u.solver().status(),
+            INJECTIVE,
+            "move {k}: {:?}",
+            u.outcome()
+        );
+        assert_eq!(u.outcome().globally_injective, Some(true));
+        let x = u.positions();
+        for &(v, p) in pins {
+            assert_eq!(x[v as usize], p, "pins arrive");
+        }
+    }
+    contacts
+}
+
+/// With overlap nothing meets; without, the same pins lead to a state in which the boundary meets itself.
+fn solid_keeps_apart(problem: &Moves<4>, material: Material) {
+    let Moves {
+        rest, start, pins, ..
+    } = problem;
+    let mut u = Untangling::of_solid(rest, start, pins, &[], material, &options()).expect("free");
+    let contacts = follow(problem, &mut u);
+    assert!(contacts > 0, "nothing was in the way");
+    let x = u.positions();
+    assert_eq!(meeting(rest, &x), 0);
+    assert!(SolidCertificate::of_solid(rest, &x).locally_injective);
+}
+
+/// Where pins lead to when nothing keeps apart.
+fn passes_through(problem: &Moves<4>) -> bool {
+    let Moves {
+        rest,
+        start,
+        pins,
+        moves,
+    } = problem;
+    let last = moves.last().expect("moves").iter();
+    let targets: Vec<Target> = last
+        .map(|&(vertex, position)| Target { vertex, position })
+        .collect();
+    let options = GiniOptions::default();
+    let material = Material::Arap;
+    let mut u =
+        Untangling::of_solid(rest, start, pins, &targets, material, &options).expect("a problem");
+    // some steps on, so that it is not only free of inversions but near the minimum
+    for _ in 0..30 {
+        u.step().expect("a step");
+    }
+    meeting(rest, &u.positions()) > 0
+}
+
+#[test]
+fn interlocked_arms_hold_each_other() {
+    let problem = interlocked_arms(1);
+    solid_keeps_apart(&problem, Material::Arap);
+    assert!(passes_through(&problem));
+}
+
+#[test]
+fn interlocked_arms_in_the_plane_do_too() {
+    let problem = interlocked_arms_in_the_plane(2);
+    let Moves {
+        rest, start, pins, ..
+    } = &problem;
+    let material = Material::Arap;
+    let mut u = Untangling::of_plane(rest, start, pins, &[], material, &options()).expect("free");
+    assert!(follow(&problem, &mut u) > 0);
+    let uv: Vec<DVec2> = u.positions().iter().map(|p| p.truncate()).collect();
+    assert!(Certificate::of_map(rest, &uv).globally_injective);
+}
+
+#[test]
+fn a_folded_sheet_lies_on_itself() {
+    let problem = folded_sheet(1);
+    solid_keeps_apart(&problem, Material::Arap);
+}
+
+#[test]
+fn a_twisted_beam_does_not_wind_through_itself() {
+    let problem = twisted_beam(2, 3);
+    solid_keeps_apart(&problem, Material::Arap);
+}
+
+#[test]
+fn boxes_slide_along_each_other() {
+    let problem = sliding_boxes(2);
+    let neo = Material::StableNeoHookean {
+        young: Material::YOUNG,
+        poisson: Material::POISSON,
+    };
+    solid_keeps_apart(&problem, neo);
+    assert!(passes_through(&problem));
+}
+
+#[test]
+fn parallel_edges_meet_and_stay_apart() {
+    let problem = parallel_edges(1);
+    solid_keeps_apart(&problem, Material::Arap);
+    assert!(passes_through(&problem));
+}
+
+#[test]
+fn a_shrinking_box_presses_a_body_to_a_quarter() {
+    let press = Press::new(3);
+    let Moves {
+        rest, start, pins, ..
+    } = &press.problem;
+    let mut u =
+        Untangling::of_solid(rest, start, pins, &[], Material::Arap, &options()).expect("free");
+    let mut scale = 1.0;
+    while press.volume(&u.positions()) > 0.25 {
+        scale *= 0.97;
+        u.move_pins(&press.walls(scale)).expect("walls");
+        run(&mut u);
+        assert_eq!(
+            u.solver().status(),
+            INJECTIVE,
+            "at {scale}: {:?}",
+            u.outcome()
+        );
+    }
+    assert_eq!(u.outcome().globally_injective, Some(true));
+    assert_eq!(meeting(rest, &u.positions()), 0);
+}
+
+#[test]
+fn targets_pull_only_as_far_as_there_is_room() {
+    // the upper box is pulled right through the lower one
+    let problem = sliding_boxes(1);
+    let rest = &problem.rest;
+    let all = 0..rest.positions.len() as u32;
+    let pins: Vec<u32> = all
+        .clone()
+        .filter(|&v| rest.positions[v as usize].z == 0.0)
+        .collect();
+    let upper = all.filter(|&v| rest.positions[v as usize].z > 1.04);
+    let targets: Vec<Target> = upper
+        .map(|vertex| Target {
+            vertex,
+            position: rest.positions[vertex as usize] - DVec3::Z,
+        })
+        .collect();
+    let options = GiniOptions {
+        target_stiffness: 0.1,
+        ..GiniOptions::overlap()
+    };
+    let start = &rest.positions;
+    let mut u =
+        Untangling::of_solid(rest, start, &pins, &targets, Material::Arap, &options).expect("free");
+    let contacts = run(&mut u);
+    assert!(contacts > 0);
+    assert_eq!(
+        u.outcome().globally_injective,
+        Some(true),
+        "{:?}",
+        u.outcome()
+    );
+}
+
+fn intersecting<const K: usize>(rest: &SimplicialMesh<K>, result: Result<Untangling, Error>) {
+    match result {
+        Err(Error::Build(BuildError::IntersectingStart { pairs })) => {
+            assert!(!pairs.is_empty());
+            let n = rest.positions.len() as u32;
+            assert!(pairs.iter().flatten().flatten().all(|&v| v < n));
+        }
+        Err(error) => panic!("another error: {error}"),
+        Ok(_) => panic!("the start meets itself"),
+    }
+}
+
+#[test]
+fn starts_that_meet_themselves_are_refused() {
+    let problem = sliding_boxes(1);
+    let mut start = problem.start.clone();
+    for (x, p) in start.iter_mut().zip(&problem.rest.positions) {
+        if p.z > 1.04 {
+            x.z -= 0.5;
+        }
+    }
+    let (rest, material) = (&problem.rest, Material::Arap);
+    intersecting(
+        rest,
+        Untangling::of_solid(rest, &start, &problem.pins, &[], material, &options()),
+    );
+    let problem = interlocked_arms_in_the_plane(1);
+    let mut start = problem.start.clone();
+    start
+        .iter_mut()
+        .for_each(|p| p.y *= if p.x > 5.0 { 0.0 } else { 1.0 });
+    let rest = &problem.rest;
+    intersecting(
+        rest,
+        Untangling::of_plane(rest, &start, &problem.pins, &[], material, &options()),
+    );
+}
+
+#[test]
+fn pins_that_would_cross_end_in_bounded_time() {
+    // the upper box's top is to go below the lower one's bottom, both held
+    let problem = sliding_boxes(1);
+    let Moves {
+        rest, start, pins, ..
+    } = &problem;
+    let mut u =
+        Untangling::of_solid(rest, start, pins, &[], Material::Arap, &options()).expect("free");
+    let to: Vec<(u32, DVec3)> = pins
+        .iter()
+        .map(|&v| (v, start[v as usize]))
+        .map(|(v, p)| (v, if p.z > 1.0 { p - 3.0 * DVec3::Z } else { p }))
+        .collect();
+    u.move_pins(&to).expect("pins");
+    run(&mut u);
+    let status = u.solver().status();
+    assert!(matches!(status, Status::Stalled | Status::MaxIterations));
+    assert_eq!(
+        u.outcome().intersections,
+        Some(0),
+        "the best state is handed out"
+    );
+}
+
+#[test]
+fn pins_are_checked() {
+    let problem = sliding_boxes(1);
+    let Moves {
+        rest, start, pins, ..
+    } = &problem;
+    let new = |options: &GiniOptions| {
+        Untangling::of_solid(rest, start, pins, &[], Material::Arap, options).expect("free")
+    };
+    let free = (0..start.len() as u32)
+        .find(|v| !pins.contains(v))
+        .expect("free");
+    let mut u = new(&options());
+    for bad in [
+        (free, DVec3::ZERO),
+        (u32::MAX, DVec3::ZERO),
+        (pins[0], DVec3::NAN),
+    ] {
+        let error = u.move_pins(&[bad]).expect_err("bad pins");
+        assert!(matches!(
+            error,
+            BuildError::InvalidOption { option: "pins", .. }
+        ));
+    }
+    let error = new(&GiniOptions::default()).move_pins(&[]);
+    assert!(error.is_err(), "only with overlap");
+}
