@@ -66,9 +66,18 @@ pub struct UntangleSettings {
     /// η, the least measure of an element in units of that at rest, before it is reduced where there is no room.
     pub offset: f64,
     /// How hard targets pull at free vertices, relative to how hard the body holds on to the one it holds on to most.
+    /// Where it is left out and `overlap` is set: 1e-5.
     pub target_stiffness: f64,
     /// Stop after this many steps.
     pub max_iterations: usize,
+    /// Keep the boundary from passing through itself? That of the start must not meet itself. Pins with targets then
+    /// move there along a path that is free.
+    pub overlap: bool,
+    /// η of contacts, relative to the body's size.
+    pub contact_offset: f64,
+    /// With `overlap`: end where no vertex has moved by more than this in a step, relative to the body's size. Where it
+    /// is left out and `overlap` is set: 1e-3.
+    pub settle: f64,
 }
 
 impl Default for UntangleSettings {
@@ -83,6 +92,9 @@ impl Default for UntangleSettings {
             offset: options.offset,
             target_stiffness: options.target_stiffness,
             max_iterations: options.max_iterations,
+            overlap: options.overlap,
+            contact_offset: options.contact_offset,
+            settle: options.settle,
         }
     }
 }
@@ -95,12 +107,24 @@ pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptio
         let names = UNTANGLE_ENERGIES.join(", ");
         return Err(invalid_option("energy", &format!("there are {names}")));
     };
+    let usual = match settings.overlap {
+        true => GiniOptions::overlap(),
+        false => GiniOptions::default(),
+    };
+    let given = |name: &str, value_of: f64, otherwise: f64| -> Fallible<f64> {
+        let set = value.is_object() && !Reflect::get(value, &name.into())?.is_undefined();
+        Ok(if set { value_of } else { otherwise })
+    };
+    let stiffness = settings.target_stiffness;
     let options = GiniOptions {
         max_qp_iterations: settings.max_qp_iterations,
         max_polish_iterations: settings.max_polish_iterations,
         offset: settings.offset,
-        target_stiffness: settings.target_stiffness,
+        target_stiffness: given("targetStiffness", stiffness, usual.target_stiffness)?,
         max_iterations: settings.max_iterations,
+        overlap: settings.overlap,
+        contact_offset: settings.contact_offset,
+        settle: given("settle", settings.settle, usual.settle)?,
     };
     Ok((material, options))
 }

@@ -24,12 +24,13 @@ describe('the packed package', () => {
   // Flattening alone took 570 KB (230 KB); solids with six materials, their generators and the readers of seven
   // formats make it 950 KB (360 KB). Two registers side by side, not one, are 60 KB (20 KB) of that, and a fifth of the
   // time. Second-order methods, which share all that does not depend on the energy, are 85 KB (35 KB), mixed-integer
-  // problems 133 KB (58 KB): elimination, three engines, lattice reduction and enumeration; untangling 134 KB (52 KB), with the element loops of five
-  // energies.
+  // problems 133 KB (58 KB): elimination, three engines, lattice reduction and enumeration; untangling 134 KB (52 KB),
+  // with the element loops of five energies, and what keeps boundaries from meeting, in two dimensions each, 115 KB
+  // (43 KB).
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_490_000, `${wasm.length} bytes`);
-    assert.ok(gzipSync(wasm, { level: 9 }).length <= 590_000);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_610_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 632_000);
   });
 
   it('pleases publint', async () => {

@@ -197,6 +197,41 @@ describe('untangling in this thread', () => {
     assert.ok(end.positions[3 * corner] > 1.1);
   });
 
+  it('keeps a boundary from passing through itself', () => {
+    // a strip whose ends are pulled through each other
+    const [nx, ny] = [25, 3];
+    const at = (i, j) => j * nx + i;
+    const positions = Float64Array.from(Array.from({ length: nx * ny }, (_, v) => [(v % nx) / 2, Math.floor(v / nx) / 2, 0]).flat());
+    const cells = Array.from({ length: (nx - 1) * (ny - 1) }, (_, c) => [c % (nx - 1), Math.floor(c / (nx - 1))]);
+    const triangles = cells.flatMap(([i, j]) => [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+    const mesh = core.mesh({ positions, indices: Uint32Array.from(triangles) });
+    const ends = [[0, 9], [nx - 1, 3]];
+    const targets = {
+      vertices: Uint32Array.from(ends.flatMap(([i]) => [0, 1, 2].map((j) => at(i, j)))),
+      positions: Float64Array.from(ends.flatMap(([, x]) => [0, 1, 2].flatMap((j) => [x, 4 + j / 2, 0]))),
+    };
+    const options = { targets, overlap: true, targetStiffness: 0.01, maxIterations: 60 };
+    const pulled = core.untangle(mesh, options);
+    const contacts = [];
+    for (const step of pulled) contacts.push(step.gini.contacts);
+    const { positions: x, certificate, outcome } = pulled.result();
+    assert.ok(Math.max(...contacts) > 0, 'they meet');
+    assert.deepEqual([certificate.inverted.length, certificate.boundaryCrossingCount, certificate.globallyInjective], [0, 0, true]);
+    assert.deepEqual([outcome.globallyInjective, outcome.intersections], [true, 0]);
+    // most of the 9 from where each end began
+    assert.ok(x[3 * at(0, 1)] > 6 && x[3 * at(nx - 1, 1)] < 6, `${x[3 * at(0, 1)]} ${x[3 * at(nx - 1, 1)]}`);
+
+    // and a boundary that meets itself already is refused, with the places
+    const crossed = positions.slice();
+    for (let v = 0; v < nx * ny; v += 1) {
+      const angle = 1.4 * Math.PI * positions[3 * v] / 6;
+      const radius = 1.4 + positions[3 * v + 1];
+      crossed.set([radius * Math.sin(angle), 3 - radius * Math.cos(angle), 0], 3 * v);
+    }
+    const refused = () => core.untangle(mesh, { ...options, start: crossed });
+    assert.throws(refused, (error) => error.code === 'intersecting-start' && /meet/.test(error.message) && error.details.pairs.length > 0);
+  });
+
   it('ends in bounded time where pins leave no room, and says why', () => {
     // left and right edge exchanged: the outline encloses a negative area
     const start = rest.positions.map((x, i) => (i % 3 === 0 ? 1 - x : x));
@@ -243,7 +278,8 @@ describe('untangling in this thread', () => {
     fails('invalid-option', () => core.untangle(mesh, { pins, targetStiffness: 0 }), 'targetStiffness');
     fails('invalid-option', () => core.untangle(mesh, { pins, maxPolishIterations: 0 }), 'maxPolishIterations');
     fails('invalid-option', () => core.untangle(mesh, { pins, maxIterations: 1.5 }), 'maxIterations');
-    fails('invalid-option', () => core.untangle(mesh, { pins, overlap: true }), 'overlap');
+    fails('invalid-option', () => core.untangle(mesh, { pins, overlap: true, contactOffset: 1 }), 'contactOffset');
+    fails('invalid-option', () => core.untangle(mesh, { pins, settle: -1 }), 'settle');
     const wild = shuffled.slice();
     wild[100] = NaN;
     assert.throws(() => core.untangle(mesh, { pins, start: wild }), /33/);
