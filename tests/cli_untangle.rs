@@ -190,3 +190,62 @@ fn bad_input_is_refused_in_one_line() {
         .foldfree("untangle --rest grid.obj --init sphere.obj")
         .fails(&["sphere.obj", "vertices"]);
 }
+
+#[test]
+fn the_ends_of_a_strip_do_not_pass_through_each_other() {
+    let folder = Folder::new("untangle-overlap");
+    let (nx, ny) = (25, 3);
+    let (mut strip, mut crossed, mut targets) = (String::new(), String::new(), String::new());
+    for v in 0..nx * ny {
+        let (x, y) = ((v % nx) as f64 / 2.0, (v / nx) as f64 / 2.0);
+        strip += &format!("v {x} {y} 0\n");
+        // nearly one and a half turns of a ring: the ends lie upon each other
+        let (angle, radius) = (8.8 * x / 12.0, 1.4 + y);
+        crossed += &format!("v {} {} 0\n", radius * angle.sin(), -radius * angle.cos());
+        for (column, end) in [(0, 9.0), (nx - 1, 3.0)] {
+            if v % nx == column {
+                targets += &format!("{v} {end} {} 0\n", 4.0 + y);
+            }
+        }
+    }
+    for cell in 0..(nx - 1) * (ny - 1) {
+        let a = cell / (nx - 1) * nx + cell % (nx - 1) + 1;
+        let faces = format!(
+            "f {a} {} {}\nf {a} {} {}\n",
+            a + 1,
+            a + nx + 1,
+            a + nx + 1,
+            a + nx
+        );
+        strip += &faces;
+        crossed += &faces;
+    }
+    folder.write("strip.obj", strip);
+    folder.write("crossed.obj", crossed);
+    folder.write("targets.txt", targets);
+    let arguments = "--targets targets.txt --target-stiffness 0.01 --overlap --iterations 40";
+    folder
+        .foldfree(&format!(
+            "untangle --init strip.obj {arguments} --out out.obj --report r.json -q"
+        ))
+        .ends(2);
+    folder
+        .foldfree("check out.obj --rest strip.obj --global -q")
+        .ends(0);
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert_eq!(report["options"]["overlap"], true);
+    assert_eq!(report["outcome"]["globally_injective"], true);
+    assert_eq!(report["outcome"]["intersections"], 0);
+    let contacts = |step: &serde_json::Value| step["gini"]["contacts"].as_u64().unwrap_or(0);
+    let steps = report["iterations"].as_array().unwrap();
+    assert!(steps.iter().any(|step| contacts(step) > 0), "they meet");
+
+    folder
+        .foldfree("check crossed.obj --rest strip.obj --global -q")
+        .ends(2);
+    folder
+        .foldfree(&format!(
+            "untangle --rest strip.obj --init crossed.obj {arguments}"
+        ))
+        .fails(&["the boundary of the start meets itself"]);
+}

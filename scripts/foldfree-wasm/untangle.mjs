@@ -9,14 +9,17 @@ import { checkSolidFormat, isSolid, positionsLike, readSolid, writeDeformed } fr
 
 export const operands = 0;
 export const options = {
-  rest: text, init: text, pins: text, targets: text, hard: flag, 'target-stiffness': text, energy: text, young: text,
+  rest: text, init: text, pins: text, targets: text, hard: flag, overlap: flag, 'target-stiffness': text, energy: text, young: text,
   poisson: text, iterations: text, threads: text, out: text, report: text, quiet,
 };
 
 function settingsOf(values) {
   whole('threads', values.threads); // taken, but this build has one
+  const { targetStiffness, settle, ...defaults } = core.defaultUntangleOptions();
   return {
-    ...core.defaultUntangleOptions(),
+    ...defaults,
+    // with overlap these two have other values, which the library knows
+    ...(values.overlap ? { overlap: true } : { targetStiffness, settle }),
     ...given({
       energy: values.energy,
       young: number('young', values.young),
