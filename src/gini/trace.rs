@@ -51,11 +51,17 @@ impl<const D: usize> Gini<D> {
         let Some(state) = self.trace.as_mut().and_then(|trace| trace.last_mut()) else {
             return;
         };
+        // x̂ has been polished since: what was violated is what was at the state that was kept
+        let mut before = self.trial.clone();
+        let kept = state.positions.as_chunks::<D>().0.iter();
+        for (position, &slot) in kept.zip(&self.slot) {
+            before[slot as usize] = *position;
+        }
         let mut number = 0;
         for z in 0..self.zones.len() {
             let members = self.zones.constraints(z).iter();
             let members = members.map(|&c| &self.set.list[c as usize]);
-            if !members.clone().any(|c| c.is_violated(&self.trial)) {
+            if !members.clone().any(|c| c.is_violated(&before)) {
                 continue;
             }
             number += 1;

@@ -297,7 +297,9 @@ describe('the command line untangles', () => {
     ]);
     assert.deepEqual([report.status, report.criterion, report.energy], ['converged', 'injective', 'arap']);
     assert.deepEqual([report.elements, report.pins, report.targets], [2 * (n - 1) ** 2, rim.length, 0]);
-    assert.deepEqual(Object.keys(report.options).sort(), ['max_iterations', 'max_polish_iterations', 'max_qp_iterations', 'offset', 'target_stiffness']);
+    assert.deepEqual(Object.keys(report.options).sort(), [
+      'contact_offset', 'max_iterations', 'max_polish_iterations', 'max_qp_iterations', 'offset', 'overlap', 'settle', 'target_stiffness',
+    ]);
     assert.deepEqual(report.outcome.not_positive, []);
     assert.ok(report.outcome.smallest_measure > 0 && report.iterations[0].inverted > 50);
     assert.equal(report.certificate.globally_injective, true);
