@@ -52,14 +52,14 @@ fn errors_are_typed() {
 
     let sphere = WasmMesh::generate("sphere", 100).expect("a shape");
     let refuse = options(&[("cut", "refuse".into())]);
-    let error = WasmParameterization::new(&sphere, &refuse)
+    let error = WasmParameterization::new(&sphere, &refuse, &[], &[], &[])
         .err()
         .expect("a sphere is no disk");
     assert_eq!(field(&error, "code"), JsValue::from("not-a-disk"));
 
     let unknown = Object::new();
     Reflect::set(&unknown, &"iterations".into(), &5.into()).expect("a fresh object");
-    let error = WasmParameterization::new(&sphere, &unknown)
+    let error = WasmParameterization::new(&sphere, &unknown, &[], &[], &[])
         .err()
         .expect("no such option");
     assert_eq!(field(&error, "code"), JsValue::from("invalid-option"));
