@@ -2,25 +2,23 @@
 
 use super::contact::{gap, gap_gradient, is_above, is_across};
 use super::simplex::{Corners, corners, measure_gradient, signed_measure};
+use crate::collision::Candidate;
 
 /// What a constraint is about: its identity, which survives iterations, and with it λ and γ. All of them are about at
-/// most four vertices. Facets and edges are numbered as in [`crate::collision::Boundary`].
+/// most four vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Key {
     /// The element at this place must not invert.
     Element(u32),
-    /// The vertex (a slot) must stay outside of the boundary face, in space.
-    VertexFace(u32, u32),
-    /// The vertex (a slot) must stay outside of the boundary edge, in the plane.
-    VertexEdge(u32, u32),
-    /// The boundary edges must not pass through each other, in space.
-    EdgeEdge(u32, u32),
+    /// The two must not pass through each other: the vertex (a slot) stays outside of the boundary face, in the plane of
+    /// the boundary edge.
+    Contact(Candidate),
 }
 
 impl Key {
     /// Is it about two parts of a boundary?
     pub fn is_contact(&self) -> bool {
-        !matches!(self, Key::Element(_))
+        matches!(self, Key::Contact(_))
     }
 }
 
@@ -116,8 +114,8 @@ impl Constraint {
         let p = corners(x, &self.slots);
         match self.key {
             Key::Element(_) => true,
-            Key::VertexFace(..) | Key::VertexEdge(..) => is_above(&p),
-            Key::EdgeEdge(..) => is_across(&p),
+            Key::Contact(Candidate::VertexFacet { .. }) => is_above(&p),
+            Key::Contact(Candidate::EdgeEdge { .. }) => is_across(&p),
         }
     }
 

@@ -5,6 +5,7 @@ use super::contact::weights;
 use super::elements::FIRST_DAMPING;
 use super::set::ConstraintSet;
 use super::simplex::{corners, signed_measure};
+use crate::collision::vector::{dot, normal, sub};
 use crate::collision::{Boundary, BroadPhase, Candidate, Impact, Pair, intersections, overlaps};
 
 /// By how much the η of a contact is reduced where the polisher has not succeeded, and what it is not reduced below,
@@ -47,14 +48,13 @@ impl Taken {
     }
 
     /// Marks both parts of a contact. Was one of them without?
-    fn take(&mut self, key: &Key) -> bool {
+    fn take(&mut self, contact: &Candidate) -> bool {
         let mark = |mark: &mut bool| !std::mem::replace(mark, true);
-        match *key {
-            Key::Element(_) => false,
-            Key::VertexFace(v, f) | Key::VertexEdge(v, f) => {
-                mark(&mut self.vertices[v as usize]) | mark(&mut self.facets[f as usize])
+        match *contact {
+            Candidate::VertexFacet { vertex, facet } => {
+                mark(&mut self.vertices[vertex as usize]) | mark(&mut self.facets[facet as usize])
             }
-            Key::EdgeEdge(e, f) => {
+            Candidate::EdgeEdge { edges: [e, f] } => {
                 mark(&mut self.edges[e as usize]) | mark(&mut self.edges[f as usize])
             }
         }
@@ -119,35 +119,37 @@ impl<const D: usize> Contacts<D> {
         let hits = self.broad.collisions(boundary, x, trial, gap, |c| {
             c.vertices(boundary).iter().any(|&v| movable[v as usize])
         });
-        let hit = |key: &Key| {
-            let candidate = candidate(key)?;
-            let place = hits.binary_search_by_key(&candidate, |h| h.0).ok()?;
+        let hit = |contact: Candidate| {
+            let place = hits.binary_search_by_key(&contact, |h| h.0).ok()?;
             Some(hits[place].1)
         };
         self.taken.clear();
         let mut known = Vec::new();
-        for constraint in set.list.iter_mut().filter(|c| c.key.is_contact()) {
-            let impact = hit(&constraint.key);
+        for constraint in &mut set.list {
+            let Key::Contact(contact) = constraint.key else {
+                continue;
+            };
+            let impact = hit(contact);
             constraint.proximal = impact.is_none();
             constraint.law = constraint.base;
             if let Some(impact) = impact {
-                insist(constraint, impact, x, trial);
+                insist(constraint, contact.pair(), impact, x, trial);
             }
             constraint.skipped = constraint.proximal && !is_opposite(constraint, trial);
-            known.push(constraint.key);
-            self.taken.take(&constraint.key);
+            known.push(contact);
+            self.taken.take(&contact);
         }
         known.sort_unstable();
         let mut new = hits.clone();
-        new.retain(|(c, _)| known.binary_search(&key::<D>(c)).is_err());
+        new.retain(|(c, _)| known.binary_search(c).is_err());
         new.sort_unstable_by(|a, b| a.1.time.total_cmp(&b.1.time).then(a.0.cmp(&b.0)));
         let before = set.list.len();
         // where everything has a contact already and yet collides, once more as if nothing had one
         for round in 0..2 {
             for &(c, impact) in &new {
-                if self.taken.take(&key::<D>(&c)) {
+                if self.taken.take(&c) {
                     let mut constraint = self.constraint(&c, x, trial, impact.time);
-                    insist(&mut constraint, impact, x, trial);
+                    insist(&mut constraint, c.pair(), impact, x, trial);
                     set.list.push(constraint);
                 }
             }
@@ -169,9 +171,8 @@ impl<const D: usize> Contacts<D> {
         time: f64,
     ) -> Constraint {
         let mut slots = c.vertices(&self.boundary);
-        let key = key::<D>(c);
-        let law = match key {
-            Key::EdgeEdge(..) => {
+        let law = match c.pair() {
+            Pair::EdgeEdge => {
                 let signed = [1.0, 0.5, 0.0].iter().find_map(|part| {
                     let p = between(&slots, x, trial, part * time);
                     let surface = surface(&p);
@@ -190,10 +191,10 @@ impl<const D: usize> Contacts<D> {
                     None => Law::Measure { scale: 0.0 },
                 }
             }
-            _ => Law::Gap,
+            Pair::VertexFace => Law::Gap,
         };
         Constraint {
-            key,
+            key: Key::Contact(*c),
             slots,
             law,
             base: law,
@@ -216,7 +217,7 @@ impl<const D: usize> Contacts<D> {
         set.retain(|c| match c.key {
             Key::Element(_) => true,
             _ if !c.proximal => true,
-            Key::EdgeEdge(..) => false,
+            Key::Contact(Candidate::EdgeEdge { .. }) => false,
             _ => c.value(iterate) - c.value(x) <= 100.0 * c.offset,
         });
     }
@@ -269,6 +270,7 @@ fn between<const D: usize>(
 /// A contact that collides, but is content at x̂, is given the law of the impact.
 fn insist<const D: usize>(
     constraint: &mut Constraint,
+    pair: Pair,
     impact: Impact<D>,
     x: &[[f64; D]],
     trial: &[[f64; D]],
@@ -280,10 +282,6 @@ fn insist<const D: usize>(
     if !content {
         return;
     }
-    let pair = match constraint.key {
-        Key::EdgeEdge(..) => Pair::EdgeEdge,
-        _ => Pair::VertexFace,
-    };
     let mut normal = [0.0; 3];
     normal[..D].copy_from_slice(&impact.normal);
     constraint.law = Law::Impact {
@@ -292,27 +290,8 @@ fn insist<const D: usize>(
     };
 }
 
-fn key<const D: usize>(candidate: &Candidate) -> Key {
-    match *candidate {
-        Candidate::VertexFacet { vertex, facet } if D == 2 => Key::VertexEdge(vertex, facet),
-        Candidate::VertexFacet { vertex, facet } => Key::VertexFace(vertex, facet),
-        Candidate::EdgeEdge { edges: [e, f] } => Key::EdgeEdge(e, f),
-    }
-}
-
-fn candidate(key: &Key) -> Option<Candidate> {
-    match *key {
-        Key::Element(_) => None,
-        Key::VertexFace(vertex, facet) | Key::VertexEdge(vertex, facet) => {
-            Some(Candidate::VertexFacet { vertex, facet })
-        }
-        Key::EdgeEdge(e, f) => Some(Candidate::EdgeEdge { edges: [e, f] }),
-    }
-}
-
 /// The area of the surface of a tetrahedron.
 fn surface<const D: usize>(p: &[[f64; D]; 4]) -> f64 {
-    use crate::collision::vector::{dot, normal, sub};
     let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
     let area = |[a, b, c]: [usize; 3]| {
         let n = normal(sub(p[b], p[a]), sub(p[c], p[a]));

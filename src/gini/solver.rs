@@ -430,13 +430,16 @@ impl<const D: usize> Gini<D> {
 
     /// What is known of the positions.
     pub fn outcome(&self) -> Outcome {
+        let not_positive = not_positive(D, &self.corners, &self.positions);
+        let intersections = self.intersections();
         Outcome {
-            not_positive: not_positive(D, &self.corners, &self.positions),
+            globally_injective: intersections
+                .map(|meeting| meeting == 0 && not_positive.is_empty() && self.is_disjoint()),
+            intersections,
+            not_positive,
             hopeless: self.hopeless.clone(),
             hopeless_measure: self.hopeless_measure,
             smallest_measure: self.smallest(&self.values),
-            globally_injective: self.proof(),
-            intersections: self.intersections(),
         }
     }
 

@@ -70,26 +70,26 @@ impl Supernodes {
                 limit: MEMORY_LIMIT,
             });
         }
-        let scratch = match upper.ncols() {
+        let (scratch, rows) = match upper.ncols() {
             // without unknowns there are no supernodes (and nothing to do)
-            0 => StackReq::EMPTY,
-            _ => supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
-                blocks_of(&symbolic),
-                Par::Seq,
-                Default::default(),
-            ),
+            0 => (StackReq::EMPTY, 0),
+            _ => {
+                let blocks = blocks_of(&symbolic);
+                let rows = |node: usize| blocks.supernode(node).pattern().len();
+                let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<usize, f64>(
+                    blocks,
+                    Par::Seq,
+                    Default::default(),
+                );
+                (
+                    scratch,
+                    (0..blocks.n_supernodes()).map(rows).max().unwrap_or(0),
+                )
+            }
         };
         // anything but zeros is written now, and the first factorisation does not wait for its memory
         let mut values = vec![1.0; symbolic.len_val() + 1];
         values[symbolic.len_val()] = 0.0;
-        let rows = match upper.ncols() {
-            0 => 0,
-            _ => {
-                let blocks = blocks_of(&symbolic);
-                let rows = |node: usize| blocks.supernode(node).pattern().len();
-                (0..blocks.n_supernodes()).map(rows).max().unwrap_or(0)
-            }
-        };
         Ok(Self {
             below: vec![0.0; rows],
             symbolic,

@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, describe, it } from 'node:test';
 import { importPacked, installPacked } from './packed.mjs';
+import { inverted, square } from './plane.mjs';
 
 const { folder } = installPacked();
 const { initSync, wasm } = await importPacked(folder, 'foldfree/core');
@@ -11,34 +12,10 @@ const core = initSync(readFileSync(new URL(wasm)));
 const foldfree = await load({ threads: false });
 after(() => foldfree.terminate());
 
-/** A unit square of n×n vertices, its cells split along their rising diagonals. */
-function square(n, { z = 0, clockwise = false } = {}) {
-  const positions = Float64Array.from(Array.from({ length: n * n }, (_, v) => [(v % n) / (n - 1), Math.floor(v / n) / (n - 1), z]).flat());
-  const indices = [];
-  for (let j = 0; j + 1 < n; j += 1) {
-    for (let i = 0; i + 1 < n; i += 1) {
-      const a = j * n + i;
-      for (const [p, q, r] of [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]) indices.push(...(clockwise ? [p, r, q] : [p, q, r]));
-    }
-  }
-  return { positions, indices: Uint32Array.from(indices) };
-}
-
 /** Left and bottom edges held, the corner (1, 1) to go to (x, x). */
 function corner(n, x = 0.2, z = 0) {
   const pins = [...Array(n * n).keys()].filter((v) => v % n === 0 || v < n).concat(n * n - 1);
   return { pins, targets: { vertices: Uint32Array.of(n * n - 1), positions: Float64Array.of(x, x, z) } };
-}
-
-/** Triangles of a deformed mesh that do not turn as those of `rest` do. */
-function inverted(rest, positions) {
-  const area = (p, [a, b, c]) => (p[3 * b] - p[3 * a]) * (p[3 * c + 1] - p[3 * a + 1]) - (p[3 * b + 1] - p[3 * a + 1]) * (p[3 * c] - p[3 * a]);
-  let count = 0;
-  for (let t = 0; t < rest.indices.length; t += 3) {
-    const corners = rest.indices.subarray(t, t + 3);
-    if (!(area(positions, corners) * area(rest.positions, corners) > 0)) count += 1;
-  }
-  return count;
 }
 
 const fails = (code, call) => assert.throws(call, (error) => {

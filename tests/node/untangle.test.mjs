@@ -3,6 +3,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, describe, it } from 'node:test';
 import { importPacked, installPacked } from './packed.mjs';
+import { inverted, square } from './plane.mjs';
 
 const { folder } = installPacked();
 const { initSync, wasm } = await importPacked(folder, 'foldfree/core');
@@ -20,19 +21,6 @@ function randoms(seed) {
   };
 }
 
-/** A unit square of n×n vertices, times `size`, at `z`. */
-function square(n, { size = 1, z = 0, clockwise = false } = {}) {
-  const positions = Float64Array.from(Array.from({ length: n * n }, (_, v) => [size * (v % n) / (n - 1), size * Math.floor(v / n) / (n - 1), z]).flat());
-  const indices = [];
-  for (let j = 0; j + 1 < n; j += 1) {
-    for (let i = 0; i + 1 < n; i += 1) {
-      const a = j * n + i;
-      for (const [p, q, r] of [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]) indices.push(...(clockwise ? [p, r, q] : [p, q, r]));
-    }
-  }
-  return { positions, indices: Uint32Array.from(indices) };
-}
-
 const rim = (n) => [...Array(n * n).keys()].filter((v) => v % n === 0 || v % n === n - 1 || v < n || v >= n * n - n);
 
 /** `rest` with the vertices that are not pinned somewhere else: `place(random)` gives three coordinates. */
@@ -40,17 +28,6 @@ function spoiled(rest, pins, place, seed = 5) {
   const [held, random, start] = [new Set(pins), randoms(seed), rest.slice()];
   for (let v = 0; v < rest.length / 3; v += 1) if (!held.has(v)) start.set(place(random, start.subarray(3 * v, 3 * v + 3)), 3 * v);
   return start;
-}
-
-/** Triangles that do not turn as those of `rest` do. */
-function invertedTriangles({ positions: rest, indices }, positions) {
-  const area = (p, [a, b, c]) => (p[3 * b] - p[3 * a]) * (p[3 * c + 1] - p[3 * a + 1]) - (p[3 * b + 1] - p[3 * a + 1]) * (p[3 * c] - p[3 * a]);
-  let count = 0;
-  for (let t = 0; t < indices.length; t += 3) {
-    const corners = indices.subarray(t, t + 3);
-    if (!(area(positions, corners) * area(rest, corners) > 0)) count += 1;
-  }
-  return count;
 }
 
 /** Six times the signed volume of a tetrahedron. */
@@ -101,14 +78,14 @@ describe('untangling in this thread', () => {
     const mesh = core.mesh(rest);
     for (const start of [shuffled, spoiled(rest.positions, pins, () => [0.4, 0.6, 0])]) {
       const solver = core.untangle(mesh, { pins, start });
-      assert.equal(solver.start.inverted, invertedTriangles(rest, start));
+      assert.equal(solver.start.inverted, inverted(rest, start));
       assert.ok(solver.start.inverted > 50);
       assert.deepEqual(solver.start.positions, start);
       const last = [...solver].at(-1);
       assert.deepEqual([last.status, last.criterion, last.inverted], ['converged', 'injective', 0]);
       const { positions, certificate, outcome, obstacles } = solver.result();
       assert.deepEqual(positions, last.positions);
-      assert.equal(invertedTriangles(rest, positions), 0);
+      assert.equal(inverted(rest, positions), 0);
       assert.ok(certificate.locallyInjective && certificate.globallyInjective);
       assert.deepEqual([outcome.notPositive, outcome.hopeless, outcome.hopelessMeasure, obstacles], [[], [], undefined, []]);
       assert.ok(outcome.smallestMeasure > 0 && outcome.smallestMeasure < 1);
@@ -127,9 +104,9 @@ describe('untangling in this thread', () => {
       assert.ok(gini.active <= gini.constraints && gini.qpIterations <= 50 && gini.polish.length <= 30);
       assert.ok(gini.leastOffset <= gini.firstOffset && gini.polishMilliseconds >= 0);
       assert.equal(trace.length, gini.polish.length + 1);
-      assert.equal(invertedTriangles(rest, trace[0].positions), gini.invertedIterate);
+      assert.equal(inverted(rest, trace[0].positions), gini.invertedIterate);
       gini.polish.forEach(({ inverted, violated, zones }, k) => {
-        assert.equal(invertedTriangles(rest, trace[k].positions), inverted, `iteration ${k}`);
+        assert.equal(inverted(rest, trace[k].positions), inverted, `iteration ${k}`);
         assert.deepEqual([trace[k].inverted, trace[k].violated, Math.max(...trace[k].zones)], [inverted, violated, zones]);
         assert.ok(trace[k].zones.filter((zone) => zone > 0).length >= violated && violated >= inverted);
       });
@@ -256,7 +233,7 @@ describe('untangling in this thread', () => {
     const turned = square(n, { clockwise: true });
     const solver = core.untangle(core.mesh(turned), { pins, start: shuffled });
     assert.match(solver.notes.join(), /clockwise: all triangles were turned/);
-    assert.equal(invertedTriangles(turned, [...solver].at(-1).positions), 0);
+    assert.equal(inverted(turned, [...solver].at(-1).positions), 0);
     assert.ok(solver.result().certificate.locallyInjective);
   });
 

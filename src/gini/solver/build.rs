@@ -158,7 +158,7 @@ impl<const D: usize> Gini<D> {
     }
 
     /// The status of the start: there already, or out of reach of any map with these pins.
-    pub(super) fn judge(&mut self) {
+    fn judge(&mut self) {
         let inverted = not_positive(D, &self.corners, &self.positions);
         let mut is_movable = vec![true; self.order.len()];
         for (place, &e) in self.order.iter().enumerate() {

@@ -1,7 +1,6 @@
 //! What is different where the boundary must not pass through itself.
 
 use super::{Gini, build};
-use crate::gini::problem::not_positive;
 use crate::optim::{BuildError, GiniStep, Status, Stopwatch};
 
 /// What part of the way that is free is taken, and how often half of it is tried.
@@ -180,18 +179,9 @@ impl<const D: usize> Gini<D> {
     }
 
     /// No part of the boundary inside another body.
-    fn is_disjoint(&self) -> bool {
+    pub(super) fn is_disjoint(&self) -> bool {
         let contacts = self.contacts.as_ref();
         contacts.is_none_or(|contacts| contacts.overlaps(&self.x).is_empty())
-    }
-
-    /// Where overlap counts: is x injective as a whole?
-    pub(super) fn proof(&self) -> Option<bool> {
-        self.contacts.as_ref()?;
-        let fine = self.intersections() == Some(0)
-            && not_positive(D, &self.corners, &self.positions).is_empty()
-            && self.is_disjoint();
-        Some(fine)
     }
 
     /// Where overlap counts: pairs of facets of x that meet.
