@@ -20,59 +20,6 @@ use crate::optim::{
 };
 use crate::parallel;
 
-/// How a run ended, or stands.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "camelCase")]
-pub struct Outcome {
-    /// Elements of the positions that are inverted or degenerate, by exact predicates.
-    pub not_positive: Vec<u32>,
-    /// Those of them all of whose vertices are pinned: no map of these pins is injective.
-    pub hopeless: Vec<u32>,
-    /// Signed measure of the whole image, where pins determine it and it is not positive: no map of these pins is
-    /// injective.
-    pub hopeless_measure: Option<f64>,
-    /// The smallest signed measure of an element relative to its rest measure.
-    pub smallest_measure: f64,
-    /// Where overlap counts: are the positions injective as a whole? Proven by exact predicates: no element is
-    /// inverted or degenerate, the boundary does not meet itself, and no part of it is inside another body.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub globally_injective: Option<bool>,
-    /// Where overlap counts: pairs of boundary facets that meet, up to 1000. There are none, unless the solver is wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub intersections: Option<usize>,
-}
-
-impl Outcome {
-    /// Why no map of these pins can be injective, and which elements are not positive, in plain sentences.
-    pub fn obstacles(&self) -> Vec<String> {
-        let listed = |list: &[u32]| {
-            let first: Vec<String> = list.iter().take(10).map(u32::to_string).collect();
-            let more = if list.len() > 10 { ", …" } else { "" };
-            format!("{}{more}", first.join(", "))
-        };
-        let mut words = Vec::new();
-        if !self.hopeless.is_empty() {
-            words.push(format!(
-                "All vertices of these inverted elements are pinned, so that no map is injective: {}.",
-                listed(&self.hopeless)
-            ));
-        }
-        if let Some(measure) = self.hopeless_measure {
-            words.push(format!(
-                "The pinned boundary encloses a signed measure of {measure:.3e}, so that no map is injective."
-            ));
-        }
-        if !self.not_positive.is_empty() {
-            words.push(format!(
-                "Inverted or degenerate elements: {}.",
-                listed(&self.not_positive)
-            ));
-        }
-        words
-    }
-}
-
 /// The state with the fewest inverted elements that has been met.
 struct Best<const D: usize> {
     inverted: usize,
@@ -88,7 +35,7 @@ pub struct Gini<const D: usize> {
     /// Element at each place.
     pub(super) order: Vec<u32>,
     /// Corners of the elements as they came.
-    corners: Vec<u32>,
+    pub(super) corners: Vec<u32>,
     /// Slot of each vertex.
     pub(super) slot: Vec<u32>,
     /// By slot: may the polisher move it?
@@ -98,7 +45,7 @@ pub struct Gini<const D: usize> {
     pub(super) set: ConstraintSet,
     pub(super) zones: Zones,
     /// Where overlap counts.
-    contacts: Option<Contacts<D>>,
+    pub(super) contacts: Option<Contacts<D>>,
     /// Held slots, and where they are to be.
     goals: Vec<(u32, [f64; D])>,
     /// Are they there, at x?
@@ -125,8 +72,8 @@ pub struct Gini<const D: usize> {
     /// The polisher's states of the newest step, where they are wanted.
     pub(super) trace: Option<Vec<PolishState>>,
     positions: Vec<f64>,
-    hopeless: Vec<u32>,
-    hopeless_measure: Option<f64>,
+    pub(super) hopeless: Vec<u32>,
+    pub(super) hopeless_measure: Option<f64>,
     /// η relative to the rest measure, where it has not been reduced.
     first_offset: f64,
     /// Are Z and U to be set from x̄?
@@ -379,7 +326,7 @@ impl<const D: usize> Gini<D> {
     }
 
     /// The smallest c relative to that at rest.
-    fn smallest(&self, values: &[f64]) -> f64 {
+    pub(super) fn smallest(&self, values: &[f64]) -> f64 {
         let relative = values.iter().zip(&self.elements.rest).map(|(c, r)| c / r);
         relative.fold(f64::INFINITY, f64::min)
     }
@@ -425,21 +372,6 @@ impl<const D: usize> Gini<D> {
         let positions = self.positions.as_chunks_mut::<D>().0;
         for (position, &slot) in positions.iter_mut().zip(&self.slot) {
             *position = self.x[slot as usize];
-        }
-    }
-
-    /// What is known of the positions.
-    pub fn outcome(&self) -> Outcome {
-        let not_positive = not_positive(D, &self.corners, &self.positions);
-        let intersections = self.intersections();
-        Outcome {
-            globally_injective: intersections
-                .map(|meeting| meeting == 0 && not_positive.is_empty() && self.is_disjoint()),
-            intersections,
-            not_positive,
-            hopeless: self.hopeless.clone(),
-            hopeless_measure: self.hopeless_measure,
-            smallest_measure: self.smallest(&self.values),
         }
     }
 

@@ -179,13 +179,8 @@ impl<const D: usize> Gini<D> {
     }
 
     /// No part of the boundary inside another body.
-    pub(super) fn is_disjoint(&self) -> bool {
+    fn is_disjoint(&self) -> bool {
         let contacts = self.contacts.as_ref();
         contacts.is_none_or(|contacts| contacts.overlaps(&self.x).is_empty())
-    }
-
-    /// Where overlap counts: pairs of facets of x that meet.
-    pub(super) fn intersections(&self) -> Option<usize> {
-        Some(self.contacts.as_ref()?.meeting(&self.x, 1000).len())
     }
 }
