@@ -91,8 +91,7 @@ const MOST_IDLE: usize = 15;
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
 
-/// Where overlap counts: steps in a row that x has not moved in after which pins take a shorter stride; after three
-/// times as many x goes part of its way.
+/// Where overlap counts: steps in a row that x has not moved in after which x̄ begins anew, with a shorter stride of pins.
 const PATIENCE: usize = 2;
 
 /// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
@@ -136,7 +135,7 @@ impl<const D: usize> Gini<D> {
 
         let clock = Stopwatch::start();
         let reached = self.polish(&mut step);
-        self.lead_pins(reached);
+        self.lead_pins(reached, step.accepted);
         let polished = step.polish.len() as u32;
         step.polish_milliseconds = clock.milliseconds();
         self.publish();
@@ -148,13 +147,14 @@ impl<const D: usize> Gini<D> {
         step.least_offset = offsets.iter().copied().fold(f64::INFINITY, f64::min);
         let first = self.first_offset;
         step.reduced_offsets = offsets.iter().filter(|&&o| o < first).count();
+        let accepted = step.accepted;
         self.report.gini = Some(step);
         self.report.conclude(
             done.then_some(Criterion::Injective),
             self.options.max_iterations,
         );
         if self.report.status == Status::Running {
-            let moves = self.contacts.is_some() && reached;
+            let moves = self.contacts.is_some() && (reached || accepted);
             self.idle = if self.best.inverted < before || moves {
                 0
             } else {
@@ -223,14 +223,14 @@ impl<const D: usize> Gini<D> {
         }
         let (mut fewest, mut vain) = (usize::MAX, 0);
         let mut count = 0;
-        let free = loop {
+        loop {
             self.elements.values(&self.trial, &mut self.trial_values);
             let violated = self.set.add_elements(&self.elements, &self.trial_values);
             let inverted = self.count_inverted();
             if count == 0 {
                 step.inverted_iterate = inverted;
             }
-            let (collisions, first) = self.update_contacts(step);
+            let collisions = self.update_contacts(step);
             if self.contacts.is_none() {
                 self.remember(inverted);
             }
@@ -247,7 +247,7 @@ impl<const D: usize> Gini<D> {
                 false => (fewest, vain + 1),
             };
             if count == self.options.max_polish_iterations || vain > MOST_VAIN {
-                break first;
+                break;
             }
             let polished = polish(
                 &mut self.set.list,
@@ -263,12 +263,10 @@ impl<const D: usize> Gini<D> {
                 collisions,
             });
             count += 1;
-        };
+        }
         self.back_off();
         self.failures += 1;
-        if self.failures.is_multiple_of(3 * PATIENCE) {
-            step.accepted = self.advance(free);
-        }
+        step.accepted = self.advance();
         false
     }
 
