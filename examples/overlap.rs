@@ -115,6 +115,12 @@ fn main() -> Result<(), foldfree::Error> {
         ("twisted-beam", twisted_beam(fine, 4)),
         ("sliding-boxes", sliding_boxes(fine)),
         ("parallel-edges", parallel_edges(fine)),
+        // no constant was chosen on those that follow
+        ("linked-rings", linked_rings(fine)),
+        ("combs", combs(fine)),
+        ("peg", peg(fine)),
+        ("buckling-beam", buckling_beam(fine)),
+        ("stack", stack(fine)),
     ];
     let material = Material::Arap;
     for (name, problem) in &solids {
@@ -126,13 +132,19 @@ fn main() -> Result<(), foldfree::Error> {
             follow(name, problem, u, verbose);
         }
     }
-    if only.is_empty() || only == "plane" {
-        let problem = interlocked_arms_in_the_plane(3 * fine);
+    let planar = [
+        ("arms in the plane", interlocked_arms_in_the_plane(3 * fine)),
+        ("gears in the plane", gears_in_the_plane(fine)),
+    ];
+    for (name, problem) in planar {
+        if !(only.is_empty() || only == "plane") {
+            continue;
+        }
         let Moves {
             rest, start, pins, ..
         } = &problem;
         let u = Untangling::of_plane(rest, start, pins, &[], material, &options())?;
-        follow("arms in the plane", &problem, u, verbose);
+        follow(name, &problem, u, verbose);
     }
     if only.is_empty() || only == "press" {
         let press = Press::new(3 * fine);
@@ -150,6 +162,12 @@ fn main() -> Result<(), foldfree::Error> {
             }
             status = sum.run(&mut u, verbose);
             reached = press.volume(&u.positions());
+            if verbose {
+                println!(
+                    "walls at {scale:.3}: {:.1} % of its volume",
+                    100.0 * reached
+                );
+            }
             if !matches!(status, Status::Converged(_)) {
                 break;
             }

@@ -11,7 +11,7 @@ use foldfree::mesh::{SolidMesh, SolidShape};
 use foldfree::optim::{BuildError, Criterion, Status};
 use glam::{DMat3, DVec3};
 use random::Random;
-use untangle_problems::{Bend, Inside, Tangle, sheet, solid};
+use untangle_problems::{Bend, Inside, Tangle, sheet, solid, spiked_wheel};
 
 const INJECTIVE: Status = Status::Converged(Criterion::Injective);
 
@@ -75,6 +75,20 @@ fn sheets_are_untangled_from_every_start() {
             assert!(u.outcome().smallest_measure > 0.0);
         }
     }
+}
+
+/// The failure case of the paper (table 2: with η set by hand it succeeds at five of six).
+#[test]
+fn a_wheel_whose_spikes_are_smoothed_away_is_untangled() {
+    for smoothings in 1..=6 {
+        let mut u = of_solid(&spiked_wheel(smoothings, None), Material::Arap);
+        run(&mut u);
+        assert_eq!(u.outcome().not_positive, [0; 0], "smoothed {smoothings}");
+    }
+    let mut u = of_solid(&spiked_wheel(6, Some(Inside::OnePoint)), Material::Arap);
+    assert!(u.solver().report().inverted > 5000);
+    run(&mut u);
+    assert_eq!(u.outcome().not_positive, [0; 0], "from one point");
 }
 
 /// A box whose vertices were shaken, without pins.

@@ -125,7 +125,7 @@ fn a_folded_sheet_lies_on_itself() {
 
 #[test]
 fn a_twisted_beam_does_not_wind_through_itself() {
-    let problem = twisted_beam(2, 3);
+    let problem = twisted_beam(2, 4);
     solid_keeps_apart(&problem, Material::Arap);
 }
 
@@ -148,8 +148,35 @@ fn parallel_edges_meet_and_stay_apart() {
 }
 
 #[test]
+fn problems_that_nothing_was_chosen_on() {
+    let problems = [
+        linked_rings(1),
+        combs(1),
+        peg(2),
+        buckling_beam(2),
+        stack(1),
+    ];
+    for problem in problems {
+        solid_keeps_apart(&problem, Material::Arap);
+    }
+}
+
+#[test]
+fn gears_in_the_plane_turn_each_other() {
+    let problem = gears_in_the_plane(1);
+    let Moves {
+        rest, start, pins, ..
+    } = &problem;
+    let material = Material::Arap;
+    let mut u = Untangling::of_plane(rest, start, pins, &[], material, &options()).expect("free");
+    follow(&problem, &mut u);
+    let uv: Vec<DVec2> = u.positions().iter().map(|p| p.truncate()).collect();
+    assert!(Certificate::of_map(rest, &uv).globally_injective);
+}
+
+#[test]
 fn a_shrinking_box_presses_a_body_to_a_quarter() {
-    let press = Press::new(3);
+    let press = Press::new(4);
     let Moves {
         rest, start, pins, ..
     } = &press.problem;

@@ -13,6 +13,10 @@ use crate::space::Plane;
 use core::ops::Range;
 use glam::DVec2;
 
+/// Once no vertex moves by more than this in a step, in units of the surface's size, composite majorization takes over:
+/// earlier it would stop at contacts that GINI still pushes apart.
+const SETTLE_BEFORE: f64 = 0.01;
+
 /// GINI on the atlas, all charts of it in one plane, side by side; with [`Method::GiniCm`] composite majorization after
 /// it. `map` is the start; where its boundary meets itself, x begins as Tutte's embedding, and x̄ there. Notes say so.
 ///
@@ -29,6 +33,10 @@ pub(super) fn bijective(
     lay_out(&mut map, &charts);
     let first = GiniOptions {
         max_iterations: options.max_iterations,
+        settle: match options.method {
+            Method::GiniCm => SETTLE_BEFORE,
+            _ => GiniOptions::overlap().settle,
+        },
         ..GiniOptions::overlap()
     };
     let build = |start: &[f64], primary: Option<&[f64]>| -> Result<Box<dyn Solver>, BuildError> {

@@ -1,6 +1,10 @@
 //! Bodies that would pass through each other, or through themselves, on the way to where they are pulled.
 #![allow(dead_code)]
 
+mod held_out;
+
+pub use held_out::*;
+
 use foldfree::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};
 use glam::DVec3;
 use std::collections::BTreeMap;

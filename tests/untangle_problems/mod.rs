@@ -2,6 +2,10 @@
 //! that is known to invert none of its elements, and the inside starts anywhere.
 #![allow(dead_code)]
 
+mod wheel;
+
+pub use wheel::spiked_wheel;
+
 use foldfree::certificate::{orientation, orientation_of_tetrahedron};
 use foldfree::geometry::RestShape;
 use foldfree::mesh::{SimplicialMesh, SolidMesh, SolidShape, SurfaceMesh, generate_solid};
