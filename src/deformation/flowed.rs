@@ -104,11 +104,7 @@ struct Route<const D: usize> {
 }
 
 impl<const D: usize> Route<D> {
-    fn new(
-        shape: &RestShape,
-        rest: &[[f64; D]],
-        start: &[[f64; D]],
-    ) -> Result<Self, BuildError> {
+    fn new(shape: &RestShape, rest: &[[f64; D]], start: &[[f64; D]]) -> Result<Self, BuildError> {
         let boundary = Boundary::<D>::new(&shape.vertices).map_err(|e| {
             let (vertices, elements) = (e.vertices, e.elements);
             BuildError::NonManifoldFacet { vertices, elements }
@@ -147,11 +143,14 @@ impl<const D: usize> Route<D> {
 
     fn note(&self, facets: &str) -> String {
         match self.flowed.steps {
-            0 => "the boundary of the start does not meet itself: it begins there, without flow".into(),
+            0 => "the boundary of the start does not meet itself: it begins there, without flow"
+                .into(),
             steps => {
                 let (pairs, steps) = (self.flowed.pairs[0], counted(steps, "step"));
                 let pairs = counted(pairs, "pair");
-                format!("the boundary of the start met itself in {pairs} of {facets}: {steps} of flow parted it")
+                format!(
+                    "the boundary of the start met itself in {pairs} of {facets}: {steps} of flow parted it"
+                )
             }
         }
     }

@@ -48,7 +48,9 @@ impl Surface {
         let n = x.len();
         let Order { unknowns, levels } = Order::new(n, edges.iter().map(|e| (e[0], e[1])));
         let mut slot = vec![0; n];
-        (0..).zip(&unknowns).for_each(|(k, &v)| slot[v as usize] = k);
+        (0..)
+            .zip(&unknowns)
+            .for_each(|(k, &v)| slot[v as usize] = k);
         let at = |v: u32| slot[v as usize];
         let entries: Vec<(u32, u32)> = edges
             .iter()
