@@ -382,6 +382,39 @@ fn a_cavity_that_is_out_comes_in() {
 }
 
 #[test]
+fn holes_in_the_plane_do_too() {
+    let wanted = hollow_square(1.1);
+    let mut u = plane(&wanted).expect("comes apart");
+    let watch = Watch::<2>::new(wanted.rest.simplices.as_flattened(), &wanted.start);
+    watch.run(&mut u);
+    assert_eq!(
+        u.outcome().globally_injective,
+        Some(true),
+        "{:?}",
+        u.outcome()
+    );
+    let out = refusal(plane(&hollow_square(5.0)));
+    assert!(out.contains("cavity"), "{out}");
+    // two squares at one corner: an outline that branches
+    let mut branch = wanted;
+    branch.rest.simplices.clear();
+    branch.rest.simplices.extend([[0, 1, 2], [0, 3, 4]]);
+    branch.rest.positions = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [1.0, 1.0],
+        [-1.0, 0.0],
+        [-1.0, -1.0],
+    ]
+    .map(|[x, y]| DVec3::new(x, y, 0.0))
+    .to_vec();
+    branch.start = branch.rest.positions.clone();
+    branch.start[3] = DVec3::new(2.0, 0.5, 0.0);
+    let branches = refusal(plane(&branch));
+    assert!(branches.contains("branches"), "{branches}");
+}
+
+#[test]
 fn what_does_not_come_apart_is_said() {
     // two boxes in one place: both become spheres in one place
     let mut wanted = nested_boxes();

@@ -6,6 +6,7 @@
 //! Every connected part of the boundary flows by itself, keeps its area (in the plane its length) and its centroid, and
 //! moves only in steps before which it meets something: what is apart already stays where it is.
 
+mod delaunay;
 mod outline;
 mod surface;
 
@@ -18,7 +19,7 @@ use std::f64::consts::PI;
 use surface::Surface;
 
 /// What [`flow_apart`] did.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Flowed {
     /// Steps that were taken; 0 where nothing met.
     pub steps: usize,

@@ -122,3 +122,16 @@ pub fn hollow_box(by: f64) -> Wanted<4> {
         false => p,
     })
 }
+
+/// The same in the plane.
+pub fn hollow_square(by: f64) -> Wanted<3> {
+    let mut cells = block([0; 2], [6; 2], 1, 0);
+    cells.retain(|(cell, _)| !cell.iter().all(|&i| i == 2 || i == 3));
+    let rest = squares(&cells, |[x, y], _| {
+        point([x, y, 0], 2) - DVec3::new(1.5, 1.5, 0.0)
+    });
+    Wanted::new(rest, |p| match p.abs().max_element() <= 0.5 {
+        true => p + by * DVec3::X,
+        false => p,
+    })
+}

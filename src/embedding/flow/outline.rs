@@ -49,6 +49,9 @@ impl Outline {
                 v => order.push(v),
             }
         }
+        if order.len() < x.len() {
+            return None;
+        }
         let n = order.len();
         let first: Vec<DVec2> = order.iter().map(|&v| x[v as usize].truncate()).collect();
         let edge = |k: usize| first[(k + 1) % n] - first[k];
@@ -140,4 +143,102 @@ fn length_and_centroid(polygon: &[DVec2]) -> (f64, DVec2) {
         sum += 0.5 * l * (*p + q);
     }
     (length, sum / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A polygon through points of a curve, and its edges.
+    fn polygon(n: u32, curve: impl Fn(f64) -> DVec2) -> (Vec<[u32; 2]>, Vec<DVec3>) {
+        let points = (0..n).map(|k| curve(TAU * f64::from(k) / f64::from(n)).extend(0.0));
+        ((0..n).map(|k| [k, (k + 1) % n]).collect(), points.collect())
+    }
+
+    fn flat(x: &[DVec3]) -> Vec<DVec2> {
+        x.iter().map(|p| p.truncate()).collect()
+    }
+
+    fn signed_area(x: &[DVec3]) -> f64 {
+        let n = x.len();
+        (0..n).map(|k| 0.5 * x[k].cross(x[(k + 1) % n]).z).sum()
+    }
+
+    #[test]
+    fn an_ellipse_becomes_a_circle_of_its_length() {
+        let shift = DVec2::new(5.0, -3.0);
+        let ellipse = |a: f64| shift + DVec2::new(3.0 * a.cos(), a.sin());
+        let (edges, mut x) = polygon(60, ellipse);
+        let mut outline = Outline::new(&edges, &x, true).expect("a polygon");
+        let (length, centroid) = length_and_centroid(&flat(&x));
+        let mut last = signed_area(&x);
+        for k in 0..STEPS {
+            let before = x.clone();
+            assert!(outline.step(&mut x));
+            let (now, centre) = length_and_centroid(&flat(&x));
+            assert!((now - length).abs() < 1e-12 * length && centre.distance(centroid) < 1e-12);
+            // isoperimetric: the rounder the more
+            let area = signed_area(&x);
+            assert!(area > last, "{k}: {area} {last}");
+            last = area;
+            let most = x.iter().zip(&before).map(|(a, b)| a.distance(*b));
+            assert!(most.fold(0.0, f64::max) < 0.25);
+        }
+        assert!(!outline.step(&mut x));
+        let radii = x.iter().map(|p| p.truncate().distance(centroid));
+        for r in radii {
+            assert!((TAU * r / length - 1.0).abs() < 2e-3, "{r}");
+        }
+        // lengths of arcs are in proportion to those of the ellipse
+        let first = outline.first[0].distance(outline.first[1]);
+        let ratio = x[0].distance(x[1]) / first;
+        assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+    }
+
+    #[test]
+    fn a_hole_is_clockwise_and_what_is_turned_over_is_turned_back() {
+        let circle = |a: f64| DVec2::new(a.cos(), -2.0 * a.sin());
+        for (is_outer, steps) in [(false, STEPS), (true, 1)] {
+            let (edges, mut x) = polygon(40, circle);
+            let mut outline = Outline::new(&edges, &x, is_outer).expect("a polygon");
+            let mut taken = 0;
+            while outline.step(&mut x) {
+                taken += 1;
+            }
+            assert_eq!(taken, steps);
+            assert_eq!(signed_area(&x) > 0.0, is_outer);
+        }
+    }
+
+    #[test]
+    fn branches_and_several_loops_are_no_outline() {
+        let x = [
+            DVec3::ZERO,
+            DVec3::X,
+            DVec3::Y,
+            DVec3::ONE,
+            DVec3::NEG_X,
+            DVec3::NEG_Y,
+        ];
+        let two = [[0, 1], [1, 2], [2, 0], [3, 4], [4, 5], [5, 3]];
+        assert!(Outline::new(&two[..3], &x[..3], true).is_some());
+        assert!(Outline::new(&two, &x, true).is_none());
+        let branch = [[0, 1], [1, 2], [2, 0], [0, 3], [3, 4], [4, 0]];
+        assert!(Outline::new(&branch, &x[..5], true).is_none());
+        assert!(
+            Outline::new(&two[..3], &[DVec3::ZERO; 3], true).is_none(),
+            "a point"
+        );
+    }
+
+    #[test]
+    fn edges_without_length_get_one() {
+        let corner = |a: f64| DVec2::new((a.cos()).clamp(-0.5, 0.5), a.sin().clamp(-0.5, 0.5));
+        let (edges, mut x) = polygon(80, corner);
+        assert!(x.windows(2).any(|w| w[0] == w[1]));
+        let mut outline = Outline::new(&edges, &x, true).expect("a polygon");
+        while outline.step(&mut x) {}
+        assert!((0..80).all(|k| x[k] != x[(k + 1) % 80]));
+        assert!(signed_area(&x) > 0.0);
+    }
 }

@@ -5,10 +5,11 @@
 //!
 //! with the lumped masses M_t of the current surface. Then the surface is put back to its first area and centroid.
 //!
-//! Weights of L₀ are (cot α + cot β)/2, and 0 where that is negative, at edges that are not Delaunay. The matrix is
-//! positive definite either way; without negative weights every vertex goes to a mean of others, so that obtuse
-//! triangles, of which surfaces that meet themselves have many, cannot throw one out of the surface.
+//! L₀ has the cotangent weights of the intrinsic Delaunay triangulation, which are never negative: every vertex goes to a
+//! mean of others, so that obtuse triangles, of which surfaces that meet themselves have many, throw none out of the
+//! surface. Plain cotangents can; with negative ones set to 0 the limit is no sphere.
 
+use super::delaunay::delaunay_weights;
 use crate::linalg::{Cholesky, Order, SymmetricAssembly};
 use crate::optim::BuildError;
 use glam::DVec3;
@@ -17,9 +18,6 @@ use glam::DVec3;
 const FIRST: f64 = 1e-4;
 const GROWTH: f64 = 1.25;
 const MOST: f64 = 0.05;
-
-/// Bound of cotangents: triangles flatter than that have the weights of one that is as flat.
-const MOST_COTANGENT: f64 = 1e4;
 
 /// A closed connected surface that flows.
 pub struct Surface {
@@ -44,7 +42,7 @@ impl Surface {
         if !(area > 0.0) {
             return Ok(None);
         }
-        let (edges, weights) = stiffness(&triangles, x);
+        let (edges, weights) = delaunay_weights(&triangles, x);
         let n = x.len();
         let Order { unknowns, levels } = Order::new(n, edges.iter().map(|e| (e[0], e[1])));
         let mut slot = vec![0; n];
@@ -124,31 +122,70 @@ fn area_and_centroid(triangles: &[[u32; 3]], x: &[DVec3]) -> (f64, DVec3) {
     (all, sum / all)
 }
 
-/// The edges, each once, and their weights.
-fn stiffness(triangles: &[[u32; 3]], x: &[DVec3]) -> (Vec<[u32; 2]>, Vec<f64>) {
-    let mut halves: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * triangles.len());
-    for t in triangles {
-        for k in 0..3 {
-            let [v, a, b] = [0, 1, 2].map(|i| t[(k + i) % 3]);
-            let [p, q] = [a, b].map(|w| x[w as usize] - x[v as usize]);
-            halves.push(([a.min(b), a.max(b)], 0.5 * cotangent(p, q)));
-        }
-    }
-    // by value too: the sum does not depend on the order of the triangles
-    halves.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let same = halves.chunk_by(|a, b| a.0 == b.0);
-    same.map(|same| {
-        let weight: f64 = same.iter().map(|half| half.1).sum();
-        (same[0].0, weight.max(0.0))
-    })
-    .unzip()
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::generate::{Shape, generate};
 
-/// Of the angle between p and q.
-fn cotangent(p: DVec3, q: DVec3) -> f64 {
-    let longest = p.length_squared().max(q.length_squared());
-    if !(longest > 0.0) {
-        return 0.0;
+    /// A sphere, stretched.
+    fn ellipsoid(axes: DVec3) -> (Vec<[u32; 3]>, Vec<DVec3>) {
+        let sphere = generate(Shape::Sphere, 1500);
+        let points = sphere.positions.iter().map(|&p| axes * p.normalize());
+        (sphere.simplices.clone(), points.collect())
     }
-    p.dot(q) / p.cross(q).length().max(longest / MOST_COTANGENT)
+
+    /// Least and most distance from the centroid.
+    fn radii(surface: &Surface, x: &[DVec3]) -> (f64, f64) {
+        let radii = x.iter().map(|p| p.distance(surface.centroid));
+        radii.fold((f64::MAX, 0.0), |(low, high), r| (low.min(r), high.max(r)))
+    }
+
+    #[test]
+    fn a_sphere_stays() {
+        let (triangles, mut x) = ellipsoid(DVec3::ONE);
+        let before = x.clone();
+        let mut surface = Surface::new(triangles, &x).expect("fits").expect("area");
+        for _ in 0..10 {
+            assert!(surface.step(&mut x).expect("a step"));
+        }
+        let most = x.iter().zip(&before).map(|(a, b)| a.distance(*b));
+        let most = most.fold(0.0, f64::max);
+        assert!(most < 0.01, "{most}");
+    }
+
+    #[test]
+    fn an_ellipsoid_becomes_a_sphere_of_its_area_step_by_step() {
+        let (triangles, mut x) = ellipsoid(DVec3::new(3.0, 1.0, 1.5));
+        let mut surface = Surface::new(triangles.clone(), &x)
+            .expect("fits")
+            .expect("area");
+        let (area, centroid) = area_and_centroid(&triangles, &x);
+        let mut last = radii(&surface, &x);
+        let first = x.clone();
+        for k in 0..40 {
+            assert!(surface.step(&mut x).expect("a step"));
+            let (now, centre) = area_and_centroid(&triangles, &x);
+            assert!((now - area).abs() < 1e-12 * area, "{now} {area}");
+            assert!(centre.distance(centroid) < 1e-12);
+            let (least, most) = radii(&surface, &x);
+            // near its end only the triangles tell it from a sphere
+            let rounder = most - least < last.1 - last.0;
+            assert!(rounder || most < 1.06 * least, "{k}: {least} {most}");
+            last = (least, most);
+            if k == 0 {
+                // t is 1e-4 of the area, 42: speeds are curvatures, and the largest is that of the tip, 2 · 3
+                let moved = x.iter().zip(&first).map(|(a, b)| a.distance(*b));
+                let most = moved.fold(0.0, f64::max);
+                assert!(most > 1e-3 && most < 1e-4 * area * 6.0, "{most}");
+            }
+        }
+        assert!(last.1 < 1.06 * last.0, "{last:?}");
+    }
+
+    #[test]
+    fn what_has_no_area_has_no_flow() {
+        let x = [DVec3::ZERO, DVec3::X, 2.0 * DVec3::X];
+        let line = Surface::new(vec![[0, 1, 2], [0, 2, 1]], &x).expect("fits");
+        assert!(line.is_none());
+    }
 }
