@@ -102,7 +102,7 @@ struct Part<const D: usize> {
 }
 
 enum Flow {
-    Surface(Surface),
+    Surface(Box<Surface>),
     Outline(Outline),
 }
 
@@ -236,7 +236,8 @@ impl<const D: usize> Part<D> {
                     }
                     _ => {
                         let triangles = self.facets.iter().map(|f| [f[0], f[1], f[D - 1]]);
-                        Surface::new(triangles.collect(), &local)?.map(Flow::Surface)
+                        Surface::new(triangles.collect(), &local)?
+                            .map(|surface| Flow::Surface(Box::new(surface)))
                     }
                 };
                 let Some(new) = new else {
