@@ -20,6 +20,7 @@ use surface::Surface;
 
 /// What [`flow_apart`] did.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
 pub struct Flowed {
     /// Steps that were taken; 0 where nothing met.
     pub steps: usize,

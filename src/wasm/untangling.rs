@@ -161,6 +161,12 @@ impl WasmUntangling {
         self.inner.notes().to_vec()
     }
 
+    /// With `flow`: how the start's boundary was parted.
+    #[wasm_bindgen(getter, unchecked_return_type = "Flowed | undefined")]
+    pub fn flowed(&self) -> Fallible<JsValue> {
+        to_js(&self.inner.flowed())
+    }
+
     /// Seconds that the checks and the factorisation took.
     #[wasm_bindgen(getter, js_name = setupSeconds)]
     pub fn setup_seconds(&self) -> f64 {

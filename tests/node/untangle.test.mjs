@@ -212,6 +212,7 @@ describe('untangling in this thread', () => {
     const { targets: _, ...soft } = options;
     const flowed = core.untangle(mesh, { ...soft, start: crossed, flow: true, maxIterations: 30 });
     assert.match(flowed.notes.join(), /met itself in \d+ pairs of edges: \d+ steps? of flow parted it/);
+    assert.ok(flowed.flowed.steps > 0 && flowed.flowed.pairs.at(-1) === 0);
     const distance = (p) => Math.hypot(...p.map((x, i) => x - crossed[i]));
     const begin = distance(flowed.start.positions);
     for (const step of flowed) assert.equal(step.inverted, 0);
@@ -220,6 +221,7 @@ describe('untangling in this thread', () => {
     assert.ok(distance(end.positions) < 0.9 * begin, `${distance(end.positions)} ${begin}`);
     const still = core.untangle(mesh, { ...soft, start: positions, flow: true });
     assert.match(still.notes.join(), /does not meet itself/);
+    assert.deepEqual([still.flowed, pulled.flowed], [{ steps: 0, pairs: [0] }, undefined]);
     assert.deepEqual(still.start.positions, positions);
     fails('invalid-option', () => core.untangle(mesh, { start: crossed, flow: true }), 'overlap');
   });
