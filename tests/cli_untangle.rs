@@ -247,5 +247,72 @@ fn the_ends_of_a_strip_do_not_pass_through_each_other() {
         .foldfree(&format!(
             "untangle --rest strip.obj --init crossed.obj {arguments}"
         ))
-        .fails(&["the boundary of the start meets itself"]);
+        .fails(&["the boundary of the start meets itself", "--flow"]);
+
+    // it is parted first, and pulled back as near as it can come
+    let flow = "--overlap --flow --target-stiffness 0.01 --iterations 40";
+    let ran = folder.foldfree(&format!(
+        "untangle --rest strip.obj --init crossed.obj {flow} --out apart.obj --report f.json"
+    ));
+    assert!(matches!(ran.code, Some(0 | 2)), "{ran:?}");
+    assert!(ran.stdout.contains("of flow parted it"), "{ran:?}");
+    folder
+        .foldfree("check apart.obj --rest strip.obj --global -q")
+        .ends(0);
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("f.json")).unwrap();
+    assert_eq!(report["outcome"]["globally_injective"], true);
+    let pairs = report["flow"]["pairs"].as_array().unwrap();
+    assert_eq!(report["flow"]["steps"], pairs.len() - 1);
+    assert!(pairs[0].as_u64().unwrap() > 0 && pairs[pairs.len() - 1] == 0);
+    // where nothing meets nothing flows
+    let ran = folder.foldfree(&format!(
+        "untangle --init strip.obj {flow} --report n.json --out same.obj"
+    ));
+    assert!(ran.stdout.contains("does not meet itself"), "{ran:?}");
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
+    assert_eq!(report["flow"]["steps"], 0);
+    let [same, strip] =
+        ["same.obj", "strip.obj"].map(|name| read(&folder.read(name), Format::Obj).unwrap().mesh);
+    assert_eq!(same.positions, strip.positions);
+    folder
+        .foldfree("untangle --init strip.obj --flow")
+        .fails(&["--overlap"]);
+}
+
+#[test]
+fn a_solid_that_passes_through_itself_comes_apart() {
+    let folder = Folder::new("untangle-flow");
+    folder
+        .foldfree("generate bar --tetrahedra 600 --out bar.mesh")
+        .ends(0);
+    let bar = foldfree::mesh::io::read_solid(&folder.read("bar.mesh"), Format::Medit)
+        .unwrap()
+        .mesh;
+    // along its length to more than a ring, with one end somewhat higher
+    let (low, high) = bar.positions.iter().fold(
+        (glam::DVec3::INFINITY, glam::DVec3::NEG_INFINITY),
+        |(low, high), &p| (low.min(p), high.max(p)),
+    );
+    let (middle, size) = (0.5 * (low + high), high - low);
+    let radius = size.x / (1.15 * std::f64::consts::TAU);
+    let mut ring = bar.clone();
+    for p in &mut ring.positions {
+        let q = *p - middle;
+        let (sin, cos) = (q.x / radius).sin_cos();
+        let up = q.z + 0.5 * size.z * q.x / size.x;
+        *p = glam::DVec3::new((radius - q.y) * sin, -(radius - q.y) * cos, up);
+    }
+    let ring = foldfree::mesh::io::write_solid(&ring, Format::Medit).unwrap();
+    folder.write("ring.mesh", ring);
+    let line = "untangle --rest bar.mesh --init ring.mesh --overlap --target-stiffness 0.01 --iterations 15 --report r.json";
+    folder
+        .foldfree(line)
+        .fails(&["the boundary of the start meets itself", "--flow"]);
+    let ran = folder.foldfree(&format!("{line} --flow --out out.mesh"));
+    assert!(matches!(ran.code, Some(0 | 2)), "{ran:?}");
+    folder.foldfree("check out.mesh --rest bar.mesh -q").ends(0);
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert_eq!(report["outcome"]["globally_injective"], true);
+    assert_eq!(report["outcome"]["intersections"], 0);
+    assert!(report["flow"]["steps"].as_u64().unwrap() > 0);
 }

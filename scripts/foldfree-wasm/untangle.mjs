@@ -9,7 +9,7 @@ import { checkSolidFormat, isSolid, positionsLike, readSolid, writeDeformed } fr
 
 export const operands = 0;
 export const options = {
-  rest: text, init: text, pins: text, targets: text, hard: flag, overlap: flag, 'target-stiffness': text, energy: text, young: text,
+  rest: text, init: text, pins: text, targets: text, hard: flag, overlap: flag, flow: flag, 'target-stiffness': text, energy: text, young: text,
   poisson: text, iterations: text, threads: text, out: text, report: text, quiet,
 };
 
@@ -20,6 +20,7 @@ function settingsOf(values) {
     ...defaults,
     // with overlap these two have other values, which the library knows
     ...(values.overlap ? { overlap: true } : { targetStiffness, settle }),
+    flow: values.flow ?? false,
     ...given({
       energy: values.energy,
       young: number('young', values.young),
@@ -67,6 +68,7 @@ export function run(_operand, values) {
   const { init, rest = init, out } = values;
   if (init === undefined) throw new Failure('--init is needed');
   needTargets(values);
+  if (values.flow && !values.overlap) throw new Failure('--flow needs --overlap');
   const settings = settingsOf(values);
   const kind = isSolid(rest) ? SOLIDS : TRIANGLES;
   if (out !== undefined) kind.check(out);
@@ -86,7 +88,7 @@ export function run(_operand, values) {
   const last = iterations.at(-1);
   say(`${status} after ${last.iteration} steps: ${solver.setupSeconds.toFixed(3)} s to set up, ${last.seconds.toFixed(3)} s to solve; ${outcome.notPositive.length} inverted or degenerate, smallest measure ${outcome.smallestMeasure.toExponential(3)} of that at rest.`);
   obstacles.forEach(say);
-  const { energy, young, poisson, ...reported } = settings;
+  const { energy, young, poisson, flow, ...reported } = settings;
   writeReport(values.report, {
     program, rest, init, status, criterion, energy, options: reported,
     threads: core.threads,
@@ -95,6 +97,7 @@ export function run(_operand, values) {
     pins: pins.length,
     targets: targets.vertices.length,
     notes,
+    ...(flow && { flow: solver.flowed }),
     setupSeconds: solver.setupSeconds,
     seconds: last.seconds,
     iterations, outcome, certificate, certificateSeconds,

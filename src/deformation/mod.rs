@@ -2,6 +2,7 @@
 
 mod body;
 mod cloth;
+mod flowed;
 mod injective;
 mod options;
 mod problem;

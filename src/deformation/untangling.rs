@@ -5,6 +5,7 @@ use super::injective::flat;
 use super::{Material, Supports, Target};
 use crate::Error;
 use crate::certificate::{Certificate, SolidCertificate};
+use crate::embedding::Flowed;
 use crate::energy::{Arap, Dirichlet, NeoHookean, StableNeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
 use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, PolishState};
@@ -16,11 +17,12 @@ use glam::{DVec2, DVec3};
 /// An untangling in progress, of a solid or of triangles in a plane z = constant.
 pub struct Untangling {
     solver: Body,
-    notes: Vec<String>,
-    setup_seconds: f64,
+    pub(super) notes: Vec<String>,
+    pub(super) setup_seconds: f64,
     /// z, in the plane.
     level: f64,
     rest: Rest,
+    pub(super) flowed: Option<Flowed>,
 }
 
 /// What certificates compare with.
@@ -83,6 +85,7 @@ impl Untangling {
             setup_seconds: clock.seconds(),
             level: 0.0,
             rest: Rest::Solid(rest.clone()),
+            flowed: None,
         })
     }
 
@@ -131,6 +134,7 @@ impl Untangling {
                 positions: rest.positions.clone(),
                 simplices: shape.vertices.as_chunks::<3>().0.to_vec(),
             }),
+            flowed: None,
         })
     }
 
@@ -152,6 +156,11 @@ impl Untangling {
             Body::Plane(solver) => solver.outcome(),
             Body::Solid(solver) => solver.outcome(),
         }
+    }
+
+    /// How the start's boundary was parted, if it came through the flow.
+    pub fn flowed(&self) -> Option<&Flowed> {
+        self.flowed.as_ref()
     }
 
     /// What was mended or chosen, in words.

@@ -5,7 +5,7 @@ import { needHandles } from './input.js';
 import type * as Bindings from './single/foldfree.js';
 import type { CoreSolid } from './solid-engine.js';
 import { dispose, type Certificate, type FramePrecision, type SolidCertificate, type StepReport } from './types.js';
-import type { PolishState, UntangleInfo, UntangleOptions, UntangleResult, UntangleStep } from './untangle-types.js';
+import type { Flowed, PolishState, UntangleInfo, UntangleOptions, UntangleResult, UntangleStep } from './untangle-types.js';
 
 /** What can be untangled. */
 type Body = { solid: CoreSolid; mesh?: never } | { mesh: { handle: Bindings.WasmMesh }; solid?: never };
@@ -14,6 +14,7 @@ type Body = { solid: CoreSolid; mesh?: never } | { mesh: { handle: Bindings.Wasm
 export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCertificate> implements UntangleInfo, Iterable<UntangleStep> {
   readonly start: UntangleStep;
   readonly notes: string[];
+  readonly flowed: Flowed | undefined;
   readonly setupSeconds: number;
   /** Precision of the positions of every step. */
   frames: FramePrecision;
@@ -46,6 +47,7 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
     this.#trace = trace;
     handle.setTrace(trace);
     this.notes = handle.notes;
+    this.flowed = handle.flowed;
     this.setupSeconds = handle.setupSeconds;
     this.start = this.frame();
   }

@@ -1,8 +1,8 @@
 // The types of untangling.
-import type { Outcome, SolidCertificate, UntangleSettings } from './single/foldfree.js';
+import type { Flowed, Outcome, SolidCertificate, UntangleSettings } from './single/foldfree.js';
 import type { Frame, Handles } from './types.js';
 
-export type { GiniStep, Outcome, PolishStep, UntangleEnergy, UntangleSettings } from './single/foldfree.js';
+export type { Flowed, GiniStep, Outcome, PolishStep, UntangleEnergy, UntangleSettings } from './single/foldfree.js';
 
 /** Options of `untangle`; what is left out has the paper's value. Pins are held where they start, or at their targets. */
 export type UntangleOptions = Partial<UntangleSettings> & Handles & {
@@ -38,6 +38,8 @@ export interface UntangleInfo {
   start: UntangleStep;
   /** What was mended or chosen, in words. */
   notes: string[];
+  /** With `flow`: how the start's boundary was parted; `pairs` of facets met before the first step, and after each. */
+  flowed: Flowed | undefined;
   /** Seconds that the checks and the factorisation took. */
   setupSeconds: number;
 }

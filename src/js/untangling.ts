@@ -2,16 +2,18 @@
 import type { Client } from './client.js';
 import { Stepper, type Wait } from './solver.js';
 import type { Certificate, SolidCertificate } from './types.js';
-import type { UntangleInfo, UntangleResult, UntangleStep } from './untangle-types.js';
+import type { Flowed, UntangleInfo, UntangleResult, UntangleStep } from './untangle-types.js';
 
 /** A solid, or (with `Certificate`) triangles in their plane, being untangled in the worker. */
 export class Untangling<C extends SolidCertificate | Certificate = SolidCertificate> extends Stepper<UntangleStep> implements UntangleInfo {
   readonly notes: string[];
+  readonly flowed: Flowed | undefined;
 
   /** @internal */
   constructor(client: Client, generation: number, id: number, info: UntangleInfo, wait: Wait, signal: AbortSignal | undefined) {
     super(client, generation, id, info, wait, signal);
     this.notes = info.notes;
+    this.flowed = info.flowed;
   }
 
   /** x̄, the primary solver's state, which may fold, n × 3. */

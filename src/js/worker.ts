@@ -199,8 +199,8 @@ function serve(port: Port): void {
         ? theCore().untangle(body, { ...options, frames })
         : theCore().untangle(body, { ...options, frames });
       solvers.set(solver, made);
-      const { start, notes, setupSeconds } = made;
-      return { start, notes, setupSeconds };
+      const { start, notes, flowed, setupSeconds } = made;
+      return { start, notes, flowed, setupSeconds };
     },
     primaryPositions: ({ solver }) => untangling(solver).primaryPositions(),
     untangled: ({ solver }) => untangling(solver).result(),

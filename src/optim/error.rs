@@ -25,9 +25,18 @@ pub enum BuildError {
     /// The boundary of the start meets itself. Facets by their vertices; of edges in the plane the second is given
     /// twice. At most 1000 pairs.
     #[error(
-        "the boundary of the start meets itself: {} pairs of facets, the first {:?} and {:?}; start from a surface without self-intersections, to which mean curvature flow leads", pairs.len(), pairs[0][0], pairs[0][1]
+        "the boundary of the start meets itself: {} pairs of facets, the first {:?} and {:?}; with the option flow (--flow) it is first parted by mean curvature flow", pairs.len(), pairs[0][0], pairs[0][1]
     )]
     IntersectingStart { pairs: Vec<[[u32; 3]; 2]> },
+    /// The boundary of the start still meets itself after mean curvature flow. Facets by their vertices, as above.
+    #[error(
+        "the boundary of the start still meets itself after {steps} steps of mean curvature flow: {pairs} pairs of facets, the first {:?} and {:?}", first[0], first[1]
+    )]
+    NotFlowedApart {
+        steps: usize,
+        pairs: usize,
+        first: [[u32; 3]; 2],
+    },
     /// A facet of more than two elements, so that there is no boundary.
     #[error("{elements} elements share the facet of vertices {vertices:?}")]
     NonManifoldFacet { vertices: [u32; 3], elements: usize },
@@ -59,6 +68,7 @@ impl BuildError {
                 "not-injective-start"
             }
             BuildError::IntersectingStart { .. } => "intersecting-start",
+            BuildError::NotFlowedApart { .. } => "not-flowed-apart",
             BuildError::NonManifoldFacet { .. } => "non-manifold-facet",
             BuildError::InvalidOption { .. } => "invalid-option",
             BuildError::WrongLength { .. } => "wrong-length",

@@ -70,9 +70,13 @@ pub struct UntangleSettings {
     pub target_stiffness: f64,
     /// Stop after this many steps.
     pub max_iterations: usize,
-    /// Keep the boundary from passing through itself? That of the start must not meet itself. Pins with targets then
-    /// move there along a path that is free.
+    /// Keep the boundary from passing through itself? That of the start must not meet itself (or see `flow`). Pins with
+    /// targets then move there along a path that is free.
     pub overlap: bool,
+    /// With `overlap`: the start's boundary is where the boundary is wanted, and may meet itself. There it is first
+    /// parted by mean curvature flow (in the plane by a flow of its curvature), then every vertex of it that has no
+    /// target is pulled back, softly. Pins go back to where they are in the start.
+    pub flow: bool,
     /// η of contacts, relative to the body's size.
     pub contact_offset: f64,
     /// With `overlap`: end where no vertex has moved by more than this in a step, relative to the body's size. Where it
@@ -93,14 +97,15 @@ impl Default for UntangleSettings {
             target_stiffness: options.target_stiffness,
             max_iterations: options.max_iterations,
             overlap: options.overlap,
+            flow: false,
             contact_offset: options.contact_offset,
             settle: options.settle,
         }
     }
 }
 
-/// `undefined` and `null` stand for the defaults.
-pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptions)> {
+/// The material, the options, and whether the start's boundary is to flow. `undefined` and `null` stand for the defaults.
+pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptions, bool)> {
     let settings: UntangleSettings = options(value)?;
     let material = Material::named(&settings.energy, settings.young, settings.poisson);
     let Some(material) = material.filter(|_| UNTANGLE_ENERGIES.contains(&&*settings.energy)) else {
@@ -126,7 +131,7 @@ pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptio
         contact_offset: settings.contact_offset,
         settle: given("settle", settings.settle, usual.settle)?,
     };
-    Ok((material, options))
+    Ok((material, options, settings.flow))
 }
 
 /// Energies that can be kept low while untangling.

@@ -32,12 +32,15 @@ impl WasmUntangling {
         target_vertices: &[u32],
         target_positions: &[f64],
     ) -> Fallible<WasmUntangling> {
-        let (material, options) = untangle_options(options)?;
+        let (material, options, flow) = untangle_options(options)?;
         let rest = solid.mesh();
         let start = started(start, &rest.positions)?;
         let targets = targets(target_vertices, target_positions)?;
-        let inner = Untangling::of_solid(rest, &start, pins, &targets, material, &options);
-        let inner = inner.map_err(thrown)?;
+        let new = match flow {
+            true => Untangling::through_flow,
+            false => Untangling::of_solid,
+        };
+        let inner = new(rest, &start, pins, &targets, material, &options).map_err(thrown)?;
         Ok(Self { inner })
     }
 
@@ -52,12 +55,15 @@ impl WasmUntangling {
         target_vertices: &[u32],
         target_positions: &[f64],
     ) -> Fallible<WasmUntangling> {
-        let (material, options) = untangle_options(options)?;
+        let (material, options, flow) = untangle_options(options)?;
         let rest = mesh.mesh();
         let start = started(start, &rest.positions)?;
         let targets = targets(target_vertices, target_positions)?;
-        let inner = Untangling::of_plane(rest, &start, pins, &targets, material, &options);
-        let inner = inner.map_err(thrown)?;
+        let new = match flow {
+            true => Untangling::through_flow_in_plane,
+            false => Untangling::of_plane,
+        };
+        let inner = new(rest, &start, pins, &targets, material, &options).map_err(thrown)?;
         Ok(Self { inner })
     }
 
@@ -153,6 +159,12 @@ impl WasmUntangling {
     #[wasm_bindgen(getter)]
     pub fn notes(&self) -> Vec<String> {
         self.inner.notes().to_vec()
+    }
+
+    /// With `flow`: how the start's boundary was parted.
+    #[wasm_bindgen(getter, unchecked_return_type = "Flowed | undefined")]
+    pub fn flowed(&self) -> Fallible<JsValue> {
+        to_js(&self.inner.flowed())
     }
 
     /// Seconds that the checks and the factorisation took.

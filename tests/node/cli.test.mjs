@@ -335,6 +335,7 @@ describe('the command line untangles', () => {
     for (const [words, ...args] of [
       [/--init is needed/, '--rest', file('grid.obj')],
       [/--hard goes with --targets/, '--init', file('grid.obj'), '--hard'],
+      [/--flow needs --overlap/, '--init', file('grid.obj'), '--flow'],
       [/energy/, '--init', file('grid.obj'), '--energy', 'neo-hookean'],
       [/energy.*arap/, '--init', file('grid.obj'), '--energy', 'rubber'],
       [/a\.node: the format is not known/, '--init', file('grid.obj'), '--out', file('a.node')],

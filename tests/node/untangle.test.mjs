@@ -206,7 +206,24 @@ describe('untangling in this thread', () => {
       crossed.set([radius * Math.sin(angle), 3 - radius * Math.cos(angle), 0], 3 * v);
     }
     const refused = () => core.untangle(mesh, { ...options, start: crossed });
-    assert.throws(refused, (error) => error.code === 'intersecting-start' && /meet/.test(error.message) && error.details.pairs.length > 0);
+    assert.throws(refused, (error) => error.code === 'intersecting-start' && /meet.*flow/.test(error.message) && error.details.pairs.length > 0);
+
+    // unless it may flow: then it is pulled back as near as it can come
+    const { targets: _, ...soft } = options;
+    const flowed = core.untangle(mesh, { ...soft, start: crossed, flow: true, maxIterations: 30 });
+    assert.match(flowed.notes.join(), /met itself in \d+ pairs of edges: \d+ steps? of flow parted it/);
+    assert.ok(flowed.flowed.steps > 0 && flowed.flowed.pairs.at(-1) === 0);
+    const distance = (p) => Math.hypot(...p.map((x, i) => x - crossed[i]));
+    const begin = distance(flowed.start.positions);
+    for (const step of flowed) assert.equal(step.inverted, 0);
+    const end = flowed.result();
+    assert.deepEqual([end.certificate.globallyInjective, end.outcome.globallyInjective], [true, true]);
+    assert.ok(distance(end.positions) < 0.9 * begin, `${distance(end.positions)} ${begin}`);
+    const still = core.untangle(mesh, { ...soft, start: positions, flow: true });
+    assert.match(still.notes.join(), /does not meet itself/);
+    assert.deepEqual([still.flowed, pulled.flowed], [{ steps: 0, pairs: [0] }, undefined]);
+    assert.deepEqual(still.start.positions, positions);
+    fails('invalid-option', () => core.untangle(mesh, { start: crossed, flow: true }), 'overlap');
   });
 
   it('ends in bounded time where pins leave no room, and says why', () => {

@@ -88,7 +88,7 @@ pub fn squares(cells: &[([i32; 2], u8)], place: impl Fn([i32; 2], u8) -> DVec3) 
 }
 
 /// All cells of a block from `low` up to `high`, `fine` times finer.
-fn block<const D: usize>(
+pub fn block<const D: usize>(
     low: [i32; D],
     high: [i32; D],
     fine: i32,
@@ -110,7 +110,7 @@ fn block<const D: usize>(
     cells.into_iter().map(|c| (c, part)).collect()
 }
 
-fn point(at: [i32; 3], fine: i32) -> DVec3 {
+pub fn point(at: [i32; 3], fine: i32) -> DVec3 {
     DVec3::new(f64::from(at[0]), f64::from(at[1]), f64::from(at[2])) / f64::from(fine)
 }
 

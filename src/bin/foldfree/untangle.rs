@@ -10,6 +10,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use foldfree::certificate::{Certificate, SolidCertificate};
 use foldfree::deformation::{Material, Target, Untangling};
+use foldfree::embedding::Flowed;
 use foldfree::gini::GiniOptions;
 use foldfree::mesh::{SolidMesh, SurfaceMesh, io};
 use foldfree::optim::{CancelToken, Solver, Status, Stopwatch};
@@ -46,10 +47,14 @@ pub struct Untangle {
     /// Hold the vertices of --targets at their points instead of pulling at them.
     #[arg(long, requires = "targets")]
     pub hard: bool,
-    /// Keep the boundary from passing through itself or through other bodies. That of INIT must not meet itself; pins
-    /// with targets move there while the way is free.
+    /// Keep the boundary from passing through itself or through other bodies. That of INIT must not meet itself (or see
+    /// --flow); pins with targets move there while the way is free.
     #[arg(long)]
     pub overlap: bool,
+    /// INIT's boundary is where the boundary is wanted, and may meet itself: there it is first parted by mean curvature
+    /// flow, then every vertex of it that has no target is pulled back. Pins go back to where they are in INIT.
+    #[arg(long, requires = "overlap")]
+    pub flow: bool,
     /// How hard targets pull, relative to how hard the body holds on to the vertex it holds on to most: 1, with
     /// --overlap 1e-5.
     #[arg(long, value_name = "K", value_parser = positive)]
@@ -99,6 +104,9 @@ struct UntangleReport<C: Serialize> {
     pins: usize,
     targets: usize,
     notes: Vec<String>,
+    /// With --flow: how the start's boundary was parted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    flow: Option<Flowed>,
     setup_seconds: f64,
     /// Seconds of all steps.
     seconds: f64,
@@ -130,8 +138,12 @@ fn solid(arguments: &Untangle, rest_path: &Path) -> Result<Outcome, Failure> {
     check_start(&arguments.init, &start, rest.positions.len())?;
     let (pins, targets) = arguments.handles(start.len())?;
     let (material, options) = (arguments.material(), arguments.options());
-    let untangling = Untangling::of_solid(&rest, &start, &pins, &targets, material, &options)
-        .map_err(Failure::new)?;
+    let new = match arguments.flow {
+        true => Untangling::through_flow,
+        false => Untangling::of_solid,
+    };
+    let untangling =
+        new(&rest, &start, &pins, &targets, material, &options).map_err(Failure::new)?;
     let body = Body {
         path: rest_path,
         elements: rest.simplices.len(),
@@ -157,8 +169,12 @@ fn planar(arguments: &Untangle, rest_path: &Path) -> Result<Outcome, Failure> {
     check_start(&arguments.init, &start, rest.positions.len())?;
     let (pins, targets) = arguments.handles(start.len())?;
     let (material, options) = (arguments.material(), arguments.options());
-    let untangling = Untangling::of_plane(&rest, &start, &pins, &targets, material, &options)
-        .map_err(Failure::new)?;
+    let new = match arguments.flow {
+        true => Untangling::through_flow_in_plane,
+        false => Untangling::of_plane,
+    };
+    let untangling =
+        new(&rest, &start, &pins, &targets, material, &options).map_err(Failure::new)?;
     let body = Body {
         path: rest_path,
         elements: rest.simplices.len(),
@@ -291,6 +307,7 @@ impl Untangle {
                 pins: body.handles[0],
                 targets: body.handles[1],
                 notes,
+                flow: untangling.flowed().cloned(),
                 setup_seconds: untangling.setup_seconds(),
                 seconds,
                 iterations,
