@@ -48,4 +48,4 @@ pub use constraint::{Constraint, Key, Law};
 pub use options::GiniOptions;
 pub use problem::GiniProblem;
 pub use solver::{Gini, Outcome};
-pub use trace::PolishState;
+pub use trace::{TraceContact, TraceState};
