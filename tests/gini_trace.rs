@@ -54,38 +54,40 @@ fn every_iteration_of_both_is_seen() {
     let material = Material::Arap;
     let mut u = Untangling::of_solid(rest, start, pins, &[], material, &overlap()).expect("free");
     u.set_trace(true);
-    u.move_pins(&moves[0]).expect("pins");
     let (mut longest, mut wrong) = (0, 0);
     let mut kinds = [[0; 2]; 2];
-    while u.solver().status() == Status::Running {
-        let report = u.step().expect("a step");
-        let gini = report.gini.expect("of gini");
-        joined(&u, gini.qp_iterations);
-        assert_eq!(u.trace().len(), gini.polish.len() + 1);
-        longest = longest.max(gini.qp_iterations);
-        for state in u.quadratic_trace().iter().chain(u.trace()) {
-            let x = &state.positions;
-            let inverted = rest.simplices.iter().filter(|t| !(volume(x, **t) > 0.0));
-            assert_eq!(state.inverted, inverted.count());
-            let simplices = rest.simplices.as_flattened();
-            assert_eq!(state.meeting, Some(meeting::<3>(simplices, x)));
-            wrong += state.meeting.unwrap_or_default();
-            for contact in &state.contacts {
-                kinds[usize::from(contact.pair == Pair::EdgeEdge)][usize::from(contact.active)] +=
-                    1;
-                let [a, b, c, d] = contact.vertices;
-                // the two hooks are different bodies; parts of one have no vertex in common
-                assert!(a != c && a != d && b != c && b != d);
+    for pins in moves {
+        u.move_pins(pins).expect("pins");
+        while u.solver().status() == Status::Running {
+            let report = u.step().expect("a step");
+            let gini = report.gini.expect("of gini");
+            joined(&u, gini.qp_iterations);
+            assert_eq!(u.trace().len(), gini.polish.len() + 1);
+            longest = longest.max(gini.qp_iterations);
+            for state in u.quadratic_trace().iter().chain(u.trace()) {
+                let x = &state.positions;
+                let inverted = rest.simplices.iter().filter(|t| !(volume(x, **t) > 0.0));
+                assert_eq!(state.inverted, inverted.count());
+                let simplices = rest.simplices.as_flattened();
+                assert_eq!(state.meeting, Some(meeting::<3>(simplices, x)));
+                wrong += state.meeting.unwrap_or_default();
+                for contact in &state.contacts {
+                    kinds[usize::from(contact.pair == Pair::EdgeEdge)]
+                        [usize::from(contact.active)] += 1;
+                    let [a, b, c, d] = contact.vertices;
+                    // the two hooks are different bodies; parts of one have no vertex in common
+                    assert!(a != c && a != d && b != c && b != d);
+                }
             }
-        }
-        for (state, step) in u.trace().iter().zip(&gini.polish) {
-            assert_eq!(
-                (state.inverted, state.violated),
-                (step.inverted, step.violated)
-            );
-            let active = state.contacts.iter().filter(|c| c.active).count();
-            assert!(active <= step.collisions);
-            assert_eq!(active > 0, step.collisions > 0);
+            for (state, step) in u.trace().iter().zip(&gini.polish) {
+                assert_eq!(
+                    (state.inverted, state.violated),
+                    (step.inverted, step.violated)
+                );
+                let active = state.contacts.iter().filter(|c| c.active).count();
+                assert!(active <= step.collisions);
+                assert_eq!(active > 0, step.collisions > 0);
+            }
         }
     }
     assert!(longest > 3 && wrong > 0, "{longest} {wrong}");

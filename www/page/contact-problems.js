@@ -103,10 +103,10 @@ export const CONTACTS = {
     held: [([x]) => x === 0, ([x]) => x === 8], moved: 1, move: ([x, y, z], count) => [x + (count > 1 ? 0.75 : 1.5), y, z],
   },
   'flat-hooks': {
-    title: 'Two hooks (flat)', description: 'The same in the plane',
+    title: 'Two hooks (flat)', planar: true, description: 'The same in the plane',
     button: 'Pull', further: 'Pull further', hint: 'Two hooks in the plane, one in the other; their far ends are held. The right one is pulled away',
     make: (size) => flat(hooks(2, size)),
-    held: [([x]) => x === 0, ([x]) => x === 8], moved: 1, move: ([x, y, z], count) => [x + (count > 1 ? 0.75 : 1.5), y, z],
+    held: [([x]) => x === 0, ([x]) => x === 8], moved: 1, move: ([x, y, z], count) => [x + (count > 1 ? 0.5 : 1.5), y, z],
   },
   cushion: {
     title: 'A cushion in a box', description: 'A rounded cube in a box whose walls come closer',

@@ -45,6 +45,9 @@ impl Column<'_> {
             let words = explain("gini", kind);
             let [at, of] = moment.polish;
             let count = match part {
+                Part::Quadratic if moment.part == Part::Quadratic => {
+                    format!("{at} of {}", moment.solves)
+                }
                 Part::Quadratic => format!("{} iterations", moment.solves),
                 Part::Polish if moment.part == Part::Polish => format!("{at} of {of}"),
                 Part::Polish => format!("{of} iterations"),
@@ -177,6 +180,7 @@ impl Column<'_> {
             (Some(violated), zones) => format!("{violated} in {} zones", whole(zones as usize)),
         };
         self.pair("below η", &zones, &format!("{elements} with less measure than η, also those that are not inverted; constraints that share vertices are one zone, and zones are polished apart."));
+        self.contacts(moment);
         let [all, active] = moment.constraints.map(|n| whole(n as usize));
         self.pair(
             "constraints, active",
@@ -199,5 +203,35 @@ impl Column<'_> {
             &number(moment.smallest, 3),
             "Of an element of what is handed out, relative to rest; below 0 inverted.",
         );
+    }
+
+    /// What must not pass through each other.
+    fn contacts(&mut self, moment: &Moment) {
+        let Some(meeting) = moment.meeting else {
+            return;
+        };
+        self.pair(
+            "pairs that cross",
+            &whole(meeting as usize),
+            "Facets of the boundary that meet where they should not, in what this step works on; exactly. In what is handed out none ever do.",
+        );
+        let (edges, corners): (Vec<_>, Vec<_>) =
+            self.bench.contacts().iter().partition(|c| c.edges);
+        for (name, list, hint) in [
+            (
+                "contacts ◆, active",
+                corners,
+                "Constraints between a vertex and a facet of the boundary: the vertex has to stay outside of it.",
+            ),
+            (
+                "contacts ✕, active",
+                edges,
+                "Constraints between two edges of the boundary: the tetrahedron of air between them must not turn over.",
+            ),
+        ] {
+            let active = list.iter().filter(|c| c.active).count();
+            let words = format!("{}, {}", whole(list.len()), whole(active));
+            self.pair(name, &words, &format!("{hint} Active ones hold the two apart now; the others did before, and stay ready."));
+        }
     }
 }
