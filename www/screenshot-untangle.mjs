@@ -1,20 +1,24 @@
-// Writes www/assets/screenshots/untangle.png: a twisted hand in the middle of a step, its zones in colour. Run after
-// `npm run build`: node www/screenshot-untangle.mjs [FILE.png] [query]
+// Writes www/assets/screenshots/untangle.png: two hooks in the middle of a step, their zones in colour and their contacts.
+// Run after `npm run build`: node www/screenshot-untangle.mjs [FILE.png] [query] [WIDTHxHEIGHT]
 import { fileURLToPath } from 'node:url';
 import { launch, openPage } from './tests/harness.mjs';
 
-const [file = fileURLToPath(new URL('assets/screenshots/untangle.png', import.meta.url)), query = ''] = process.argv.slice(2);
+const [file = fileURLToPath(new URL('assets/screenshots/untangle.png', import.meta.url)), query = '&body=hooks', size = '1300x850'] = process.argv.slice(2);
+const [width, height] = size.split('x').map(Number);
 const site = await launch();
 try {
-  const { page } = await openPage(site, { query: `?mode=untangle&body=hand&theme=light${query}`, viewport: { width: 1400, height: 860 } });
+  const { page } = await openPage(site, { query: `?mode=untangle&theme=light${query}`, viewport: { width, height } });
   await page.selectOption('#pace', '0');
-  await page.click('#unfold');
-  await page.waitForFunction(() => globalThis.foldfreePage.session.finished, null, { timeout: 120_000 });
-  await page.waitForSelector('#play:not(.playing)');
-  // an iteration of the polisher with several zones, and much that is wrong yet
+  for (const button of ['#unfold', '#further']) {
+    if (await page.isHidden(button)) continue;
+    await page.click(button);
+    await page.waitForFunction(() => globalThis.foldfreePage.session.finished, null, { timeout: 120_000 });
+    await page.waitForSelector('#play:not(.playing)');
+  }
+  // an iteration of the polisher with zones, and much that is wrong yet
   const at = await page.evaluate(() => {
     const { records } = globalThis.foldfreePage.session;
-    const score = ({ part, zones, inverted }) => (part === 'polish' && zones > 1 ? inverted : -1);
+    const score = ({ part, zones, inverted, contacts }) => (part === 'polish' && zones > 0 ? inverted + (contacts?.active ?? 0) : -1);
     return records.reduce((best, record, i) => (score(record) > score(records[best]) ? i : best), 0);
   });
   await page.fill('#history', String(at));

@@ -6,6 +6,7 @@ use super::Column;
 use crate::canvas::style;
 use crate::history::{Moment, Part, PhaseKind, Record};
 use crate::scale::{number, whole};
+use crate::solid::contact::Contact;
 use crate::words::{citation, explain, method_name};
 
 /// A line about a part of the step.
@@ -215,7 +216,7 @@ impl Column<'_> {
             &whole(meeting as usize),
             "Facets of the boundary that meet where they should not, in what this step works on; exactly. In what is handed out none ever do.",
         );
-        let (edges, corners): (Vec<_>, Vec<_>) =
+        let (edges, corners): (Vec<&Contact>, Vec<&Contact>) =
             self.bench.contacts().iter().partition(|c| c.edges);
         for (name, list, hint) in [
             (
