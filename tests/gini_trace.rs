@@ -54,7 +54,7 @@ fn every_iteration_of_both_is_seen() {
     let material = Material::Arap;
     let mut u = Untangling::of_solid(rest, start, pins, &[], material, &overlap()).expect("free");
     u.set_trace(true);
-    let (mut longest, mut wrong) = (0, 0);
+    let (mut longest, mut wrong, mut zoned) = (0, 0, 0);
     let mut kinds = [[0; 2]; 2];
     for pins in moves {
         u.move_pins(pins).expect("pins");
@@ -74,12 +74,17 @@ fn every_iteration_of_both_is_seen() {
                 for contact in &state.contacts {
                     kinds[usize::from(contact.pair == Pair::EdgeEdge)]
                         [usize::from(contact.active)] += 1;
+                    zoned += usize::from(contact.zone > 0);
                     let [a, b, c, d] = contact.vertices;
                     // the two hooks are different bodies; parts of one have no vertex in common
                     assert!(a != c && a != d && b != c && b != d);
                 }
             }
             for (state, step) in u.trace().iter().zip(&gini.polish) {
+                let elements = state.zones.iter().copied();
+                let contacts = state.contacts.iter().map(|c| c.zone);
+                let zones = elements.chain(contacts).max().unwrap_or_default();
+                assert_eq!(zones as usize, step.zones);
                 assert_eq!(
                     (state.inverted, state.violated),
                     (step.inverted, step.violated)
@@ -90,7 +95,10 @@ fn every_iteration_of_both_is_seen() {
             }
         }
     }
-    assert!(longest > 3 && wrong > 0, "{longest} {wrong}");
+    assert!(
+        longest > 3 && wrong > 0 && zoned > 0,
+        "{longest} {wrong} {zoned}"
+    );
     assert!(kinds[0][1] > 0 && kinds[1][1] > 0, "{kinds:?}");
     let free = u.trace().last().expect("states");
     assert_eq!((free.inverted, free.meeting), (0, Some(0)));

@@ -1,6 +1,6 @@
 //! What a step goes through, for those who want to see it: the iterations of the quadratic problem, then the polisher's.
 
-use super::constraint::Key;
+use super::constraint::{Constraint, Key};
 use super::dual::Visited;
 use super::solver::Gini;
 use crate::collision::Pair;
@@ -38,6 +38,8 @@ pub struct TraceContact {
     /// In the quadratic problem: its multiplier is not 0. In the polisher: the two collide on the way from x to x̂. Those
     /// that are not active are proximal: they did collide before, and keep their place in the set.
     pub active: bool,
+    /// Of the polisher: the zone of violated constraints that it is in, the first being 1; 0: in none.
+    pub zone: u32,
 }
 
 /// What is kept of a step.
@@ -181,6 +183,7 @@ impl<const D: usize> Gini<D> {
                 vertices: c.slots.map(|slot| trace.vertex[slot as usize]),
                 pair: candidate.pair(),
                 active: is_active(place),
+                zone: 0,
             }),
             _ => None,
         })
@@ -199,18 +202,26 @@ impl<const D: usize> Gini<D> {
         for (position, &slot) in kept.zip(&self.slot) {
             before[slot as usize] = *position;
         }
+        // of each constraint its place among the contacts that were kept
+        let mut contacts = 0..state.contacts.len();
+        let is_kept = |c: &Constraint| c.key.is_contact() && !c.skipped;
+        let list = self.set.list.iter();
+        let places: Vec<Option<usize>> = list
+            .map(|c| is_kept(c).then(|| contacts.next()).flatten())
+            .collect();
         let mut number = 0;
         for z in 0..self.zones.len() {
             let members = self.zones.constraints(z).iter();
-            let members = members.map(|&c| &self.set.list[c as usize]);
-            if !members.clone().any(|c| c.is_violated(&before)) {
+            let all = members.clone().map(|&c| &self.set.list[c as usize]);
+            if !all.clone().any(|c| c.is_violated(&before)) {
                 continue;
             }
             number += 1;
-            for constraint in members {
-                // contacts are no elements; those beside them are in the zone where they are violated, too
+            for (constraint, &place) in all.zip(members) {
                 if let Key::Element(e) = constraint.key {
                     state.zones[self.order[e as usize] as usize] = number;
+                } else if let Some(contact) = places[place as usize] {
+                    state.contacts[contact].zone = number;
                 }
             }
         }

@@ -135,10 +135,10 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
   }
 }
 
-/** From six numbers each. */
+/** From seven numbers each. */
 function contactsOf(numbers: Uint32Array): Contacts {
-  const column = (j: number) => numbers.filter((_, i) => i % 6 === j);
+  const column = (j: number) => numbers.filter((_, i) => i % 7 === j);
   return {
-    vertices: numbers.filter((_, i) => i % 6 < 4), edges: Uint8Array.from(column(4)), active: Uint8Array.from(column(5)),
+    vertices: numbers.filter((_, i) => i % 7 < 4), edges: Uint8Array.from(column(4)), active: Uint8Array.from(column(5)), zones: column(6),
   };
 }

@@ -23,6 +23,8 @@ export interface Contacts {
    * x̂. Where it is 0 they are proximal: they did collide before.
    */
   active: Uint8Array;
+  /** In the polisher: the zone of violated constraints that each is in, the first being 1; 0: in none. */
+  zones: Uint32Array;
 }
 
 /** What is worked on inside a step: x̄ or x̂ of the paper. */

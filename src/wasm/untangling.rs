@@ -142,24 +142,17 @@ impl WasmUntangling {
         Ok(counts.iter().flatten().map(|&n| n as u32).collect())
     }
 
-    /// The contacts in its constraint set, six numbers each: the vertices, 1 for two edges (0: a vertex and a facet), 1
-    /// where it is active.
+    /// The contacts in its constraint set, seven numbers each: the vertices, 1 for two edges (0: a vertex and a facet), 1
+    /// where it is active, its zone.
     #[wasm_bindgen(js_name = traceContacts)]
     pub fn trace_contacts(&self, state: usize) -> Fallible<Vec<u32>> {
-        let contacts = self.state(state)?.contacts.iter();
-        Ok(contacts
-            .flat_map(|c| {
-                let [a, b, p, q] = c.vertices;
-                [
-                    a,
-                    b,
-                    p,
-                    q,
-                    (c.pair == Pair::EdgeEdge).into(),
-                    c.active.into(),
-                ]
-            })
-            .collect())
+        let mut numbers = Vec::new();
+        for c in &self.state(state)?.contacts {
+            numbers.extend(c.vertices);
+            let edges = c.pair == Pair::EdgeEdge;
+            numbers.extend([edges.into(), c.active.into(), c.zone]);
+        }
+        Ok(numbers)
     }
 
     /// What is known of x, by exact predicates.

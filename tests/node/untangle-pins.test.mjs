@@ -60,7 +60,7 @@ describe('pins that move', () => {
   it('every state inside a step comes with what is wrong in it', () => {
     const solver = core.untangle(core.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4), trace: true });
     assert.deepEqual([solver.start.trace, solver.start.quadratic, solver.start.status], [[], [], 'running']);
-    let [crossed, active] = [0, 0];
+    let [crossed, active, zoned] = [0, 0, 0];
     for (const { gini, trace, quadratic } of solver) {
       assert.equal(quadratic.length, gini.qpIterations + 1);
       assert.deepEqual(quadratic.at(-1).positions, trace[0].positions);
@@ -69,7 +69,10 @@ describe('pins that move', () => {
         assert.equal(inverted(rest, state.positions), state.inverted);
         assert.ok(state.violated >= state.inverted);
         crossed = Math.max(crossed, state.meeting);
-        const { vertices, edges, active: holds } = state.contacts;
+        const { vertices, edges, active: holds, zones } = state.contacts;
+        assert.equal(zones.length, edges.length);
+        assert.ok(state.zones || zones.every((zone) => zone === 0), 'zones are the polisher’s');
+        zoned = Math.max(zoned, ...zones);
         assert.deepEqual([vertices.length, holds.length], [4 * edges.length, edges.length]);
         assert.ok(edges.every((edge) => edge === 0), 'in the plane a vertex meets an edge');
         assert.ok(vertices.every((v, i) => v < 2 * n * n && (i % 4 < 3 || v === vertices[i - 1])));
@@ -77,7 +80,7 @@ describe('pins that move', () => {
       }
       assert.equal(trace[0].zones.length, rest.indices.length / 3);
     }
-    assert.ok(crossed > 0 && active > 0);
+    assert.ok(crossed > 0 && active > 0 && zoned > 0);
     // without overlap nothing of that is looked for
     const free = core.untangle(core.mesh(rest), { pins, targets: pressed({ rest, high }, 0.4), trace: true });
     const step = free.step();

@@ -199,10 +199,10 @@ function moment({ part, k, counts, violated = -1, meeting = -1, zones, gini }) {
   ];
 }
 
-/** Six numbers a contact: its vertices, two edges or not, active or not. */
-function contactNumbers({ vertices, edges, active } = { vertices: [], edges: [], active: [] }) {
-  const out = new Uint32Array(6 * edges.length);
-  for (let i = 0; i < edges.length; i += 1) out.set([...vertices.subarray(4 * i, 4 * i + 4), edges[i], active[i]], 6 * i);
+/** Seven numbers a contact: its vertices, two edges or not, active or not, its zone. */
+function contactNumbers({ vertices, edges, active, zones } = { edges: [] }) {
+  const out = new Uint32Array(7 * edges.length);
+  for (let i = 0; i < edges.length; i += 1) out.set([...vertices.subarray(4 * i, 4 * i + 4), edges[i], active[i], zones[i]], 7 * i);
   return out;
 }
 

@@ -241,7 +241,8 @@ export class UntangleSession {
   }
 
   #part(kind, { trial, result = this.#last.result, primary = this.#last.primary, zones, report, gini, k = 0, of = 0, inverted, violated, meeting, contacts }) {
-    const count = zones?.reduce((most, zone) => Math.max(most, zone), 0) ?? 0;
+    const most = (list) => list?.reduce((highest, zone) => Math.max(highest, zone), 0) ?? 0;
+    const count = Math.max(most(zones), most(contacts?.zones)); // a zone may be of contacts alone
     const touching = contacts && { all: contacts.active.length, active: contacts.active.reduce((sum, one) => sum + one, 0) };
     const record = {
       ...report, part: kind, k, of, counts: inverted, inverted: inverted[0], violated, zones: count, gini,

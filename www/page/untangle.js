@@ -128,15 +128,30 @@ export class Untangle extends Mode {
     const { body, planar } = this.session;
     if (planar) this.bench.planar(body);
     else this.bench.solid(body);
+    // zones of contacts are on the outside
+    this.bench.tinted(this.apart !== undefined);
     const measure = planar ? areaOf(body.positions, body.indices) : volumeOf(body.positions, body.tetrahedra);
     this.#relative = relativeTo(1, Math.abs(measure));
+  }
+
+  /** Positions (n×3) that views are to have room for: where what is held goes first, too. */
+  #room(start) {
+    const { groups } = this.session.problem;
+    if (!groups) return start;
+    const points = [start];
+    let { at } = groups[this.apart.moved];
+    for (let count = 2; count < 4; count += 1) {
+      points.push(at);
+      at = moved(this.apart, at, count);
+    }
+    return Float64Array.from(points.flatMap((list) => [...list]));
   }
 
   #begin(first) {
     const { session, wanted } = this;
     const { pins, start } = session.problem;
     this.bench.begin('gini', wanted.start, wanted.energy);
-    this.bench.lookAt(start);
+    this.bench.lookAt(this.#room(start));
     this.#moves = 1;
     const handles = new Handles();
     handles.keepOnly(session.problem.groups?.map((group) => ({ ...group })) ?? (pins.length ? [{ vertices: pins, at: pick(start, pins) }] : []));

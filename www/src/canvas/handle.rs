@@ -177,7 +177,8 @@ impl BenchHandle {
 
     /// Adds a moment of an untangling: numbers as for `pushFrame`, with the seventeen of a moment behind the first ten; what
     /// the step works on (n×3) and the zone of every element (m, or nothing); the state that is handed out and the
-    /// primary solver's (n×3 each); its contacts, six numbers each: vertices, two edges or not, active or not.
+    /// primary solver's (n×3 each); its contacts, seven numbers each: vertices, two edges or not,
+    /// active or not, zone.
     #[wasm_bindgen(js_name = pushMoment)]
     pub fn push_moment(
         &self,

@@ -11,16 +11,19 @@ pub struct Contact {
     pub edges: bool,
     /// Whether it holds them apart now.
     pub active: bool,
+    /// The zone of violated constraints that it is in, the first being 1; 0: in none.
+    pub zone: u32,
 }
 
 impl Contact {
-    /// From six numbers each: the vertices, which must be below `limit`, two edges or not, active or not.
+    /// From seven numbers each: the vertices, which must be below `limit`, two edges or not, active or not, the zone.
     pub fn from_numbers(numbers: &[u32], limit: usize) -> Vec<Self> {
-        let all = numbers.as_chunks::<6>().0.iter();
-        let contacts = all.map(|&[a, b, c, d, edges, active]| Self {
+        let all = numbers.as_chunks::<7>().0.iter();
+        let contacts = all.map(|&[a, b, c, d, edges, active, zone]| Self {
             vertices: [a, b, c, d],
             edges: edges != 0,
             active: active != 0,
+            zone,
         });
         contacts
             .filter(|contact| contact.vertices.iter().all(|v| (*v as usize) < limit))
@@ -59,13 +62,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn contacts_come_from_six_numbers_each() {
-        let numbers = [0, 1, 2, 3, 0, 1, 4, 5, 6, 9, 1, 0, 4, 5, 6, 7, 1, 0, 8];
+    fn contacts_come_from_seven_numbers_each() {
+        let numbers = [
+            0, 1, 2, 3, 0, 1, 5, 4, 5, 6, 9, 1, 0, 0, 4, 5, 6, 7, 1, 0, 0, 8,
+        ];
         let contacts = Contact::from_numbers(&numbers, 8);
         let [first, second] = contacts[..] else {
             panic!("vertex 9 is none, and a rest is no contact: {contacts:?}")
         };
-        assert!(first.active && !first.edges && first.vertices == [0, 1, 2, 3]);
+        assert!(first.active && !first.edges && first.zone == 5 && first.vertices == [0, 1, 2, 3]);
         assert!(second.edges && !second.active && second.vertices == [4, 5, 6, 7]);
     }
 
@@ -78,6 +83,7 @@ mod tests {
             vertices: [0, 1, 2, 3],
             edges,
             active: true,
+            zone: 0,
         };
         assert!((place(&contact(true), &positions) - Vec3::new(0.5, 0.0, 0.1)).length() < 1e-6);
         assert_eq!(

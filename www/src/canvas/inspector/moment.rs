@@ -174,13 +174,17 @@ impl Column<'_> {
         self.pair("handed out", &result, &format!("Inverted {elements} of x, the state that is handed out: it moves only when none of them gets worse."));
         self.pair("primary solver", &primary, &format!("Inverted {elements} of the primary solver’s state, x with a bar in the paper: it may fold, and may unwind what polishing alone cannot."));
         let violated = moment.violated.map(|n| whole(n as usize));
-        let zones = match (violated, moment.zones) {
-            (None, _) => "not looked at".into(),
-            (Some(violated), 0) => violated,
-            (Some(violated), 1) => format!("{violated} in 1 zone"),
-            (Some(violated), zones) => format!("{violated} in {} zones", whole(zones as usize)),
+        let violated = violated.unwrap_or_else(|| "not looked at".into());
+        self.pair(
+            "below η",
+            &violated,
+            &format!("{elements} with less measure than η, also those that are not inverted."),
+        );
+        let zones = match (moment.part, moment.zones) {
+            (Part::Polish | Part::Outcome, zones) | (_, zones @ 1..) => whole(zones as usize),
+            _ => "–".into(),
         };
-        self.pair("below η", &zones, &format!("{elements} with less measure than η, also those that are not inverted; constraints that share vertices are one zone, and zones are polished apart."));
+        self.pair("zones", &zones, "Violated constraints that share vertices are one zone, and zones are polished apart; the colours tell them apart.");
         self.contacts(moment);
         let [all, active] = moment.constraints.map(|n| whole(n as usize));
         self.pair(

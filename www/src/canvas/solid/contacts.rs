@@ -1,13 +1,18 @@
 //! Contacts: what keeps a boundary from passing through itself. A diamond where a vertex meets a facet, a cross where two
-//! edges meet; filled and bold where the contact is active, an outline where it is not.
+//! edges meet; filled and bold where the contact is active, an outline where it is not; in the colour of its zone, where
+//! colours are those of zones.
+
+use std::collections::BTreeSet;
 
 use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use glam::Vec3;
 
 use crate::canvas::bench::Bench;
 use crate::canvas::style;
+use crate::colour::zones;
 use crate::scale::whole;
 use crate::solid::contact::{Contact, place};
+use crate::solid::field::Field;
 use crate::solid::pick::Lens;
 
 /// Half the size of a glyph, in points; of many, which would hide the body, less.
@@ -15,39 +20,61 @@ const SIDE: f32 = 5.0;
 const SMALL: f32 = 3.2;
 const MANY: usize = 120;
 
-/// Draws the contacts of the moment on show that are `here`; returns how many of vertices and facets, and of edges.
+/// Draws the contacts of the moment on show that are `here`, where many are nearly in one place one of them; returns how
+/// many there are of vertices and facets, and of edges.
 pub fn draw(
     painter: &Painter,
     rect: Rect,
     lens: &Lens,
     bench: &Bench,
-    positions: &[f32],
+    (positions, zoned): (&[f32], bool),
     here: impl Fn(Vec3) -> bool,
 ) -> [usize; 2] {
     let contacts = bench.contacts();
     let side = if contacts.len() > MANY { SMALL } else { SIDE };
-    let mut drawn = [0; 2];
-    for active in [false, true] {
+    let mut there = [0; 2];
+    let mut taken: BTreeSet<(bool, i32, i32)> = BTreeSet::new();
+    // active ones come first to their places
+    let mut drawn = Vec::new();
+    for active in [true, false] {
         for contact in contacts.iter().filter(|c| c.active == active) {
             let p = place(contact, positions);
             if !p.is_finite() || !here(p) {
                 continue;
             }
+            there[usize::from(contact.edges)] += 1;
             let (at, _) = lens.project(p);
-            glyph(painter, rect.min + vec2(at.x, at.y), contact, side, bench);
-            drawn[usize::from(contact.edges)] += 1;
+            let [x, y] = [at.x, at.y].map(|x| (x / (1.5 * side)).floor() as i32);
+            if taken.insert((contact.edges, x, y)) {
+                drawn.push((rect.min + vec2(at.x, at.y), contact));
+            }
         }
     }
-    drawn
+    // diamonds on top of crosses, active ones on top of others
+    for edges in [true, false] {
+        for (at, contact) in drawn.iter().rev().filter(|(_, c)| c.edges == edges) {
+            let own = match contact.zone {
+                0 => bench.theme.ink,
+                zone if zoned => zones(f64::from(Field::Zone.position(f64::from(zone)))),
+                _ => bench.theme.ink,
+            };
+            glyph(painter, *at, contact, side, bench, style::colour(own));
+        }
+    }
+    there
 }
 
-fn glyph(painter: &Painter, at: Pos2, contact: &Contact, side: f32, bench: &Bench) {
+fn glyph(painter: &Painter, at: Pos2, contact: &Contact, side: f32, bench: &Bench, own: Color32) {
     let ink = style::colour(bench.theme.ink);
     let ground = style::colour(bench.theme.ground);
     if contact.edges {
-        let width = if contact.active { 2.0 } else { 1.0 };
-        let arm = 0.8 * side;
-        for (width, ink) in [(width + 2.2, ground), (width, ink)] {
+        let arm = 0.85 * side;
+        let strokes = match contact.active {
+            true if own != ink => [(4.4, ground), (3.4, ink), (1.6, own)],
+            true => [(4.4, ground), (2.2, ink), (2.2, ink)],
+            false => [(2.6, ground), (1.0, own), (1.0, own)],
+        };
+        for (width, ink) in strokes {
             for arm in [vec2(arm, arm), vec2(arm, -arm)] {
                 painter.line_segment([at - arm, at + arm], Stroke::new(width, ink));
             }
@@ -55,21 +82,16 @@ fn glyph(painter: &Painter, at: Pos2, contact: &Contact, side: f32, bench: &Benc
         return;
     }
     let diamond = |side: f32, fill: Color32, stroke: Stroke| {
-        let corners = [
-            vec2(0.0, -side),
-            vec2(side, 0.0),
-            vec2(0.0, side),
-            vec2(-side, 0.0),
-        ];
-        painter.add(Shape::convex_polygon(
-            corners.map(|c| at + c).to_vec(),
-            fill,
-            stroke,
-        ));
+        let corners = [(0.0, -side), (side, 0.0), (0.0, side), (-side, 0.0)];
+        let corners = corners.map(|(x, y)| at + vec2(x, y)).to_vec();
+        painter.add(Shape::convex_polygon(corners, fill, stroke));
     };
     match contact.active {
-        true => diamond(side, ink, Stroke::new(1.4, ground)),
-        false => diamond(side - 0.4, ground, Stroke::new(1.1, ink)),
+        true => {
+            diamond(side + 1.6, ground, Stroke::NONE);
+            diamond(side, own, Stroke::new(1.1, ink));
+        }
+        false => diamond(side - 0.4, ground, Stroke::new(1.1, own)),
     }
 }
 
@@ -118,14 +140,11 @@ pub fn key(painter: &Painter, rect: Rect, bench: &Bench) {
             vertices: [0; 4],
             edges,
             active: true,
+            zone: 0,
         };
-        glyph(
-            painter,
-            pos2(x, place.center().y),
-            &sample,
-            4.4 * text,
-            bench,
-        );
+        let middle = pos2(x, place.center().y);
+        let ink = style::colour(theme.ink);
+        glyph(painter, middle, &sample, 4.4 * text, bench, ink);
         x -= 15.0 * text;
     }
 }

@@ -7,6 +7,7 @@ use super::{Body, contacts};
 use crate::canvas::bench::Bench;
 use crate::canvas::{gpu, legend, style};
 use crate::scale::{number, whole};
+use crate::solid::field::Field;
 use crate::solid::pick::{Lens, triangle_at};
 use crate::solid::slice::Plane;
 use crate::solid::stretch::corners;
@@ -56,8 +57,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     }
     if let (Some(plane), Some(frame)) = (plane, bench.map()) {
         let near = NEAR * bench.orbit.radius;
-        let positions = body.positions(frame);
-        contacts::draw(ui.painter(), rect, &lens, bench, positions, |p| {
+        let shown = (body.positions(frame), body.field == Field::Zone);
+        contacts::draw(ui.painter(), rect, &lens, bench, shown, |p| {
             plane.height(p).abs() < near
         });
     }

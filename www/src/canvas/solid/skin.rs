@@ -7,6 +7,7 @@ use super::{Body, Grab, contacts, handles};
 use crate::canvas::bench::{Bench, Event};
 use crate::canvas::{gpu, legend, style};
 use crate::scale::whole;
+use crate::solid::field::Field;
 use crate::solid::pick::{Lens, vertex_at, vertices_in};
 
 /// How far beside the solid a pointer may be and still mean a vertex, in points.
@@ -52,8 +53,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             &body,
             body.positions(frame),
         );
-        let positions = body.positions(frame);
-        body.drawn_contacts = contacts::draw(ui.painter(), rect, &lens, bench, positions, |_| true);
+        let shown = (body.positions(frame), body.field == Field::Zone);
+        body.drawn_contacts = contacts::draw(ui.painter(), rect, &lens, bench, shown, |_| true);
     }
     contacts::key(ui.painter(), rect, bench);
     handles::rubber(ui.painter(), ui, bench, &body);
