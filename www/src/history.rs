@@ -210,9 +210,11 @@ impl Record {
         })
     }
 
-    /// max(σ₁, 1/σ of the last) over the elements; infinite while one is inverted or collapsed.
+    /// max(σ₁, 1/σ of the last) over the elements; infinite while one is inverted or collapsed. Of an untangling that of the
+    /// state that is handed out.
     pub fn worst_distortion(&self) -> f64 {
-        if self.smallest_sigma > 0.0 && self.inverted == 0 {
+        let inverted = self.moment.map_or(self.inverted, |m| m.inverted[1]);
+        if self.smallest_sigma > 0.0 && inverted == 0 {
             self.largest_sigma.max(1.0 / self.smallest_sigma)
         } else {
             f64::INFINITY
@@ -410,6 +412,15 @@ mod tests {
             ([30, 12], [0.01, 0.1], true)
         );
         assert_eq!((m.violated, m.meeting), (Some(20), Some(11)));
+        // it is x whose stretch is told, whatever is wrong in what is worked on
+        let mut record = record.clone();
+        (record.smallest_sigma, record.largest_sigma, record.inverted) = (0.5, 1.5, 7);
+        assert_eq!(record.worst_distortion(), f64::INFINITY);
+        record.moment = record.moment.map(|m| Moment {
+            inverted: [7, 0, 8],
+            ..m
+        });
+        assert_eq!(record.worst_distortion(), 2.0);
     }
 
     #[test]
