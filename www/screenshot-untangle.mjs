@@ -23,10 +23,10 @@ async function take(site, { file, query, presses, size }) {
     await page.waitForFunction(() => globalThis.foldfreePage.session.finished, null, { timeout: 120_000 });
     await page.waitForSelector('#play:not(.playing)');
   }
-  // an iteration of the polisher with zones, and much that is wrong yet
+  // an iteration of the polisher, or its beginning, with zones and much that is wrong yet
   const at = await page.evaluate(() => {
     const { records } = globalThis.foldfreePage.session;
-    const score = ({ part, zones, inverted, contacts }) => (part === 'polish' && zones > 1 ? inverted + (contacts?.active ?? 0) : -1);
+    const score = ({ part, zones, inverted, contacts }) => ((part === 'polish' || contacts) && zones > 1 ? inverted + (contacts?.active ?? 0) : -1);
     return records.reduce((best, record, i) => (score(record) > score(records[best]) ? i : best), 0);
   });
   await page.evaluate((k) => globalThis.foldfreePage.mode.scrub(k), at);

@@ -22,7 +22,7 @@ function executable() {
 }
 
 /** Starts a server and a browser; `close` ends both. */
-export async function launch({ isolation = false } = {}) {
+export async function launch({ isolation = true } = {}) {
   const server = await serve(dist, { isolation });
   const browser = await chromium.launch({ executablePath: executable(), args: ARGUMENTS });
   return {
