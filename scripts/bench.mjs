@@ -1,9 +1,10 @@
 // npm run bench: native, wasm and wasm with threads on the same problems in the same run. Surfaces are flattened, also
 // by the peers that are installed (libigl by pip, watlas by npm); solids are deformed; mixed-integer problems are solved
 // natively only, and so is the way to the minimum of second-order methods. Locally injective mappings: natively, and in
-// wasm in Node.
-// node scripts/bench.mjs [--only surfaces|solids|miqp|minimum|lim] [--iterations N] [--threads N] [--quick] [--json FILE]
-//   [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000] [--systems FOLDER]
+// wasm in Node. Folded bodies are untangled.
+// node scripts/bench.mjs [--only surfaces|solids|miqp|minimum|lim|untangle] [--iterations N] [--threads N] [--quick]
+//   [--json FILE] [--meshes FOLDER] [--sizes 20000,100000] [--solids FOLDER] [--tetrahedra 10000] [--systems FOLDER]
+//   [--tangles FOLDER] [--growth 10000,30000,100000,300000,1000000]
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { cpus, tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -27,6 +28,8 @@ const { values } = parseArgs({
     solids: { type: 'string', default: join(data, 'quasistatic') },
     systems: { type: 'string', default: join(data, 'miqp') },
     tetrahedra: { type: 'string', default: '10000' },
+    tangles: { type: 'string', default: join(data, 'untangle') },
+    growth: { type: 'string', default: '10000,30000,100000,300000,1000000' },
   },
 });
 const { quick } = values;
@@ -69,6 +72,13 @@ const KINDS = {
     const { measureLim, limTables } = await import('./bench/lim.mjs');
     const measured = await measureLim(bench, { quick });
     return { ...measured, text: limTables(measured) };
+  },
+  untangle: async (bench) => {
+    const { measureUntangle, untangleTables } = await import('./bench/untangle.mjs');
+    const sizes = quick ? '10000' : values.growth;
+    const scale = sizes.split(',').filter(Boolean).map((size) => count('growth', size));
+    const measured = await measureUntangle(bench, { folder: values.tangles, tetrahedra: quick ? 10000 : 30000, scale, quick });
+    return { ...measured, text: untangleTables(measured, bench) };
   },
 };
 

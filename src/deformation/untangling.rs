@@ -314,6 +314,7 @@ impl Prepared {
         GiniProblem {
             rest: shape,
             start: &self.start,
+            primary: None,
             pins: &self.pins,
             springs: &self.springs,
         }

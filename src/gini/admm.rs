@@ -69,8 +69,7 @@ pub struct Admm {
 }
 
 impl Admm {
-    /// Analyses and factors. `rest` is in the order of memory, `order` says which elements those are. Springs come
-    /// with stiffnesses relative to the largest diagonal entry of A without them.
+    /// Analyses and factors. `rest` is in the order of memory, `order` says which elements those are.
     pub fn new(
         body: Body,
         rest: &RestShape,
@@ -81,17 +80,8 @@ impl Admm {
     ) -> Result<Self, BuildError> {
         let shape = body.shape;
         let k = shape.constants.rest_stiffness;
-        let mut external = external.clone();
-        if !external.springs.is_empty() {
-            let n = start.len() / shape.dimension;
-            let most = rest.laplacian_diagonal(n).into_iter().fold(0.0, f64::max);
-            external
-                .springs
-                .iter_mut()
-                .for_each(|s| s.stiffness *= k * most);
-        }
-        let terms = Terms::new(&external, start, &elimination.slot, elimination.free);
-        let mut system = System::new(rest, elimination, Some(&external))?;
+        let terms = Terms::new(external, start, &elimination.slot, elimination.free);
+        let mut system = System::new(rest, elimination, Some(external))?;
         system
             .factorize(Some(&terms), |_| k)
             .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;

@@ -104,17 +104,15 @@ impl<const D: usize> Contacts<D> {
     }
 
     /// Brings contacts up to date: what has come to collide between x and x̂ joins the set, the first contact of every
-    /// vertex, facet and edge that has none; those that do not collide become proximal. Returns how many pairs collide,
-    /// and when the first does (1 if none does).
+    /// vertex, facet and edge that has none; those that do not collide become proximal. Returns how many pairs collide.
     pub fn update(
         &mut self,
         set: &mut ConstraintSet,
         x: &[[f64; D]],
         trial: &[[f64; D]],
         movable: &[bool],
-    ) -> (usize, f64) {
-        let least = self.relative.iter().copied().fold(1.0, f64::min);
-        let gap = GAP * least * self.offset;
+    ) -> usize {
+        let gap = self.gap();
         let boundary = &self.boundary;
         let hits = self.broad.collisions(boundary, x, trial, gap, |c| {
             c.vertices(boundary).iter().any(|&v| movable[v as usize])
@@ -158,8 +156,27 @@ impl<const D: usize> Contacts<D> {
             }
             self.taken.clear();
         }
-        let first = hits.iter().map(|h| h.1.time).fold(1.0, f64::min);
-        (hits.len(), first)
+        hits.len()
+    }
+
+    /// The slots of pairs that collide between x and x̂.
+    pub fn colliding(
+        &mut self,
+        x: &[[f64; D]],
+        trial: &[[f64; D]],
+        movable: &[bool],
+    ) -> Vec<[u32; 4]> {
+        let boundary = &self.boundary;
+        let hits = self.broad.collisions(boundary, x, trial, self.gap(), |c| {
+            c.vertices(boundary).iter().any(|&v| movable[v as usize])
+        });
+        hits.iter().map(|hit| hit.0.vertices(boundary)).collect()
+    }
+
+    /// How near two parts may come on the way.
+    fn gap(&self) -> f64 {
+        let least = self.relative.iter().copied().fold(1.0, f64::min);
+        GAP * least * self.offset
     }
 
     /// The constraint of a pair that collides at this time.

@@ -34,6 +34,7 @@ mod dual;
 mod elements;
 mod offsets;
 mod options;
+mod outcome;
 mod polisher;
 mod problem;
 mod set;
@@ -46,6 +47,7 @@ mod zones;
 
 pub use constraint::{Constraint, Key, Law};
 pub use options::GiniOptions;
+pub use outcome::Outcome;
 pub use problem::GiniProblem;
-pub use solver::{Gini, Outcome};
+pub use solver::Gini;
 pub use trace::{TraceContact, TraceState};

@@ -3,9 +3,12 @@
 use super::simplex::signed_measure;
 use crate::certificate::{orientation, orientation_of_tetrahedron};
 use crate::disjoint_sets::DisjointSets;
+use crate::energy::Energy;
 use crate::geometry::RestShape;
 use crate::optim::{BuildError, Spring};
-use crate::wrapd::External;
+use crate::space::Space;
+use crate::wrapd::elements::Shape;
+use crate::wrapd::{External, Linear};
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;
 
@@ -16,6 +19,9 @@ pub struct GiniProblem<'a> {
     pub rest: &'a RestShape,
     /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
     pub start: &'a [f64],
+    /// Where x̄ begins, if that is not the start: the primary solver may begin folded, or with a boundary that meets
+    /// itself, what x must not where overlap counts. As long as the start.
+    pub primary: Option<&'a [f64]>,
     /// Vertices held where they start. There may be none: a component without pin or spring keeps its centroid.
     pub pins: &'a [u32],
     /// Springs on free vertices; their stiffness is relative to the largest diagonal entry of the Laplacian, times
@@ -24,15 +30,54 @@ pub struct GiniProblem<'a> {
 }
 
 impl GiniProblem<'_> {
+    /// The springs with stiffnesses as the energy's: of each its own, times κ, times the largest diagonal entry of the
+    /// Laplacian.
+    pub(crate) fn absolute_springs<S: Space, E: Energy<S>>(
+        &self,
+        energy: &E,
+        target_stiffness: f64,
+    ) -> Vec<Spring> {
+        if self.springs.is_empty() {
+            return Vec::new();
+        }
+        let k = Shape::of::<S, Linear, E>(energy).constants.rest_stiffness;
+        let n = self.start.len() / S::DIM;
+        let diagonal = self.rest.laplacian_diagonal(n);
+        let unit = target_stiffness * k * diagonal.into_iter().fold(0.0, f64::max);
+        let absolute = |s: &Spring| Spring {
+            stiffness: unit * s.stiffness,
+            ..*s
+        };
+        self.springs.iter().map(absolute).collect()
+    }
+
     /// Checks that the parts fit together.
-    pub(super) fn validate(&self, dimension: usize, external: &External) -> Result<(), BuildError> {
+    pub(super) fn validate(&self, dimension: usize) -> Result<(), BuildError> {
+        let external = External {
+            springs: self.springs.to_vec(),
+            ..Default::default()
+        };
         let problem = crate::wrapd::Problem {
             rest: self.rest,
             start: self.start,
             pins: self.pins,
-            external: Some(external),
+            external: Some(&external),
         };
         problem.validate_parts(dimension, dimension)?;
+        if let Some(primary) = self.primary {
+            let start = primary;
+            crate::wrapd::Problem { start, ..problem }.validate_parts(dimension, dimension)?;
+            if primary.len() != self.start.len() {
+                return Err(BuildError::InvalidOption {
+                    option: "primary",
+                    what: format!(
+                        "{} coordinates, and {} of the start",
+                        primary.len(),
+                        self.start.len()
+                    ),
+                });
+            }
+        }
         let n = self.start.len() / dimension;
         let mut is_held = vec![false; n];
         self.pins.iter().for_each(|&p| is_held[p as usize] = true);

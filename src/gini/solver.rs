@@ -20,59 +20,6 @@ use crate::optim::{
 };
 use crate::parallel;
 
-/// How a run ended, or stands.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-#[cfg_attr(target_arch = "wasm32", derive(tsify::Tsify))]
-#[serde(rename_all = "camelCase")]
-pub struct Outcome {
-    /// Elements of the positions that are inverted or degenerate, by exact predicates.
-    pub not_positive: Vec<u32>,
-    /// Those of them all of whose vertices are pinned: no map of these pins is injective.
-    pub hopeless: Vec<u32>,
-    /// Signed measure of the whole image, where pins determine it and it is not positive: no map of these pins is
-    /// injective.
-    pub hopeless_measure: Option<f64>,
-    /// The smallest signed measure of an element relative to its rest measure.
-    pub smallest_measure: f64,
-    /// Where overlap counts: are the positions injective as a whole? Proven by exact predicates: no element is
-    /// inverted or degenerate, the boundary does not meet itself, and no part of it is inside another body.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub globally_injective: Option<bool>,
-    /// Where overlap counts: pairs of boundary facets that meet, up to 1000. There are none, unless the solver is wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub intersections: Option<usize>,
-}
-
-impl Outcome {
-    /// Why no map of these pins can be injective, and which elements are not positive, in plain sentences.
-    pub fn obstacles(&self) -> Vec<String> {
-        let listed = |list: &[u32]| {
-            let first: Vec<String> = list.iter().take(10).map(u32::to_string).collect();
-            let more = if list.len() > 10 { ", …" } else { "" };
-            format!("{}{more}", first.join(", "))
-        };
-        let mut words = Vec::new();
-        if !self.hopeless.is_empty() {
-            words.push(format!(
-                "All vertices of these inverted elements are pinned, so that no map is injective: {}.",
-                listed(&self.hopeless)
-            ));
-        }
-        if let Some(measure) = self.hopeless_measure {
-            words.push(format!(
-                "The pinned boundary encloses a signed measure of {measure:.3e}, so that no map is injective."
-            ));
-        }
-        if !self.not_positive.is_empty() {
-            words.push(format!(
-                "Inverted or degenerate elements: {}.",
-                listed(&self.not_positive)
-            ));
-        }
-        words
-    }
-}
-
 /// The state with the fewest inverted elements that has been met.
 struct Best<const D: usize> {
     inverted: usize,
@@ -88,7 +35,7 @@ pub struct Gini<const D: usize> {
     /// Element at each place.
     pub(super) order: Vec<u32>,
     /// Corners of the elements as they came.
-    corners: Vec<u32>,
+    pub(super) corners: Vec<u32>,
     /// Slot of each vertex.
     pub(super) slot: Vec<u32>,
     /// By slot: may the polisher move it?
@@ -125,8 +72,8 @@ pub struct Gini<const D: usize> {
     /// The states inside of the newest step, where they are wanted.
     pub(super) trace: Option<Trace<D>>,
     positions: Vec<f64>,
-    hopeless: Vec<u32>,
-    hopeless_measure: Option<f64>,
+    pub(super) hopeless: Vec<u32>,
+    pub(super) hopeless_measure: Option<f64>,
     /// η relative to the rest measure, where it has not been reduced.
     first_offset: f64,
     /// Are Z and U to be set from x̄?
@@ -144,8 +91,7 @@ const MOST_IDLE: usize = 15;
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
 
-/// Where overlap counts: steps in a row that x has not moved in after which pins take a shorter stride; after three
-/// times as many x goes part of its way.
+/// Where overlap counts: steps in a row that x has not moved in after which x̄ begins anew, with a shorter stride of pins.
 const PATIENCE: usize = 2;
 
 /// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
@@ -192,7 +138,7 @@ impl<const D: usize> Gini<D> {
 
         let clock = Stopwatch::start();
         let reached = self.polish(&mut step);
-        self.lead_pins(reached);
+        self.lead_pins(reached, step.accepted);
         let polished = step.polish.len() as u32;
         step.polish_milliseconds = clock.milliseconds() - self.trace_milliseconds();
         self.publish();
@@ -204,13 +150,14 @@ impl<const D: usize> Gini<D> {
         step.least_offset = offsets.iter().copied().fold(f64::INFINITY, f64::min);
         let first = self.first_offset;
         step.reduced_offsets = offsets.iter().filter(|&&o| o < first).count();
+        let accepted = step.accepted;
         self.report.gini = Some(step);
         self.report.conclude(
             done.then_some(Criterion::Injective),
             self.options.max_iterations,
         );
         if self.report.status == Status::Running {
-            let moves = self.contacts.is_some() && reached;
+            let moves = self.contacts.is_some() && (reached || accepted);
             self.idle = if self.best.inverted < before || moves {
                 0
             } else {
@@ -279,14 +226,14 @@ impl<const D: usize> Gini<D> {
         }
         let (mut fewest, mut vain) = (usize::MAX, 0);
         let mut count = 0;
-        let free = loop {
+        loop {
             self.elements.values(&self.trial, &mut self.trial_values);
             let violated = self.set.add_elements(&self.elements, &self.trial_values);
             let inverted = self.count_inverted();
             if count == 0 {
                 step.inverted_iterate = inverted;
             }
-            let (collisions, first) = self.update_contacts(step);
+            let collisions = self.update_contacts(step);
             if self.contacts.is_none() {
                 self.remember(inverted);
             }
@@ -303,7 +250,7 @@ impl<const D: usize> Gini<D> {
                 false => (fewest, vain + 1),
             };
             if count == self.options.max_polish_iterations || vain > MOST_VAIN {
-                break first;
+                break;
             }
             let polished = polish(
                 &mut self.set.list,
@@ -319,12 +266,10 @@ impl<const D: usize> Gini<D> {
                 collisions,
             });
             count += 1;
-        };
+        }
         self.back_off();
         self.failures += 1;
-        if self.failures.is_multiple_of(3 * PATIENCE) {
-            step.accepted = self.advance(free);
-        }
+        step.accepted = self.advance();
         false
     }
 
@@ -382,7 +327,7 @@ impl<const D: usize> Gini<D> {
     }
 
     /// The smallest c relative to that at rest.
-    fn smallest(&self, values: &[f64]) -> f64 {
+    pub(super) fn smallest(&self, values: &[f64]) -> f64 {
         let relative = values.iter().zip(&self.elements.rest).map(|(c, r)| c / r);
         relative.fold(f64::INFINITY, f64::min)
     }
@@ -434,21 +379,6 @@ impl<const D: usize> Gini<D> {
         let positions = self.positions.as_chunks_mut::<D>().0;
         for (position, &slot) in positions.iter_mut().zip(&self.slot) {
             *position = self.x[slot as usize];
-        }
-    }
-
-    /// What is known of the positions.
-    pub fn outcome(&self) -> Outcome {
-        let not_positive = not_positive(D, &self.corners, &self.positions);
-        let intersections = self.intersections();
-        Outcome {
-            globally_injective: intersections
-                .map(|meeting| meeting == 0 && not_positive.is_empty() && self.is_disjoint()),
-            intersections,
-            not_positive,
-            hopeless: self.hopeless.clone(),
-            hopeless_measure: self.hopeless_measure,
-            smallest_measure: self.smallest(&self.values),
         }
     }
 

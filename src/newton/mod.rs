@@ -12,6 +12,7 @@
 //!
 //! Elements are evaluated by the kernels of [`crate::wrapd`].
 
+mod after_gini;
 pub mod bound;
 pub(crate) mod corners;
 pub(crate) mod curvature;
@@ -30,6 +31,7 @@ mod turns;
 #[cfg(test)]
 mod turns_tests;
 
+pub use after_gini::GiniThenNewton;
 pub use hybrid::Hybrid;
 pub use options::NewtonOptions;
 pub use solver::Newton;

@@ -1,11 +1,13 @@
 //! The iteration.
 
+mod apart;
 mod attempts;
 mod curve;
 mod handles;
 mod mending;
 mod search;
 
+use self::apart::Apart;
 use self::attempts::{FIRST_PART, Tried};
 use super::NewtonOptions;
 use super::curvature::{Curvature, OnCorners, Projected};
@@ -47,6 +49,10 @@ pub struct Newton {
     turns: Option<Turns>,
     /// Vertices one by one, after steps cut short.
     relaxation: Option<Relaxation>,
+    /// What keeps the boundary from passing through itself.
+    apart: Option<Box<dyn Apart>>,
+    /// Does no step invert an element, even where the energy would not mind?
+    keeps_positive: bool,
     /// Slot of each vertex: free ones in elimination order, then the pinned.
     slot: Vec<u32>,
     /// Of a plane that nothing else holds: the piece of each slot, and the only pins of those that have one.
@@ -200,6 +206,8 @@ impl Newton {
             system,
             turns,
             relaxation,
+            apart: None,
+            keeps_positive: false,
             slot: elimination.slot,
             piece,
             only_pins,
@@ -241,7 +249,7 @@ impl Newton {
     }
 
     /// Continues from these positions, by vertex.
-    pub(super) fn restart(&mut self, positions: &[f64], report: &StepReport) {
+    pub(crate) fn restart(&mut self, positions: &[f64], report: &StepReport) {
         self.positions.copy_from_slice(positions);
         parallel::in_pool(|| self.look());
         self.take_over(report);

@@ -2,6 +2,7 @@
 //! choice of a solver.
 
 mod atlas;
+mod bijective;
 mod landmarks;
 mod options;
 mod problem;

@@ -24,6 +24,12 @@ pub enum Method {
     WrapdCm,
     /// SLIM (Rabinovich et al. 2017); injective starts for symmetric Dirichlet.
     Slim,
+    /// GINI with overlap constraints (Overby, Kaufman & Narain 2021): any start, and an image whose boundary does not
+    /// pass through itself.
+    Gini,
+    /// The same, then composite majorization, whose steps end before the boundary would meet itself.
+    #[serde(rename = "gini+cm")]
+    GiniCm,
     /// ARAP by local/global (Liu et al. 2008).
     Arap,
     /// Least squares conformal map (Lévy et al. 2002): direct.
@@ -138,7 +144,7 @@ impl ParameterizationOptions {
                 what: format!("{} is not a finite number above 0", self.landmark_stiffness),
             });
         }
-        let majorizes = matches!(self.method, Method::Cm | Method::WrapdCm);
+        let majorizes = matches!(self.method, Method::Cm | Method::WrapdCm | Method::GiniCm);
         if majorizes && self.energy != EnergyKind::SymmetricDirichlet {
             return Err(BuildError::InvalidOption {
                 option: "energy",

@@ -1,6 +1,7 @@
 //! A mesh, made ready, and the solver that flattens it.
 
 use super::atlas::Atlas;
+use super::bijective::bijective;
 use super::landmarks::{Landmark, Landmarks};
 use super::shelves::lay_out;
 use super::starts::start;
@@ -102,7 +103,8 @@ impl Parameterization {
             Start::Automatic if direct => Start::Collapsed,
             kind => kind,
         };
-        if !landmarks.is_empty() && (direct || options.method == Method::Arap) {
+        let bare = matches!(options.method, Method::Arap | Method::Gini | Method::GiniCm);
+        if !landmarks.is_empty() && (direct || bare) {
             return Err(BuildError::InvalidOption {
                 option: "landmarks",
                 what: "are for the ADMM methods, cm, wrapd+cm and slim".into(),
@@ -164,6 +166,11 @@ impl Parameterization {
                 options.tolerance,
                 options.max_iterations,
             )?),
+            Method::Gini | Method::GiniCm => {
+                let (solver, note) = bijective(&atlas, &rest, map, options, scale)?;
+                atlas.notes.extend(note);
+                solver
+            }
             Method::Lscm | Method::Harmonic | Method::Tutte => {
                 let clock = Stopwatch::start();
                 let kind = match options.method {

@@ -104,7 +104,9 @@ describe('the session', () => {
         }
         assert.deepEqual(record.counts[0], invertedOf(session.body, part.trial), `${record.part} ${record.k}`);
         if (record.part === 'outcome') steps += 1;
-        if (record.part === 'outcome' && record.gini.accepted) assert.equal(record.meeting, 0, 'nothing that is handed out crosses');
+        // where the polisher fails x may go a part of the way
+        const there = record.part === 'outcome' && part.result.every((x, i) => x === part.trial[i]);
+        if (there) assert.equal(record.meeting, 0, 'nothing that is handed out crosses');
       }
       assert.equal(session.newest.iteration, steps, 'steps are counted on');
       assert.equal(session.newest.status, 'converged');

@@ -300,8 +300,8 @@ impl Sample {
 }
 
 const METHODS: &[&str] = &[
-    "wrapd", "r-admm", "w-admm", "admm-pd", "cm", "wrapd+cm", "slim", "arap", "lscm", "harmonic",
-    "tutte",
+    "wrapd", "r-admm", "w-admm", "admm-pd", "cm", "wrapd+cm", "slim", "gini", "gini+cm", "arap",
+    "lscm", "harmonic", "tutte",
 ];
 const ENERGIES: &[&str] = &["symmetric-dirichlet", "arap"];
 const STARTS: &[&str] = &[

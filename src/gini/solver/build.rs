@@ -11,7 +11,7 @@ use crate::gini::problem::{held_measure, not_positive};
 use crate::gini::set::ConstraintSet;
 use crate::gini::zones::Zones;
 use crate::gini::{GiniOptions, GiniProblem};
-use crate::optim::{BuildError, Criterion, Spring, Status, StepReport};
+use crate::optim::{BuildError, Criterion, Status, StepReport};
 use crate::parallel;
 use crate::space::Space;
 use crate::wrapd::External;
@@ -43,20 +43,21 @@ impl<const D: usize> Gini<D> {
             S::DIM == D && S::STRETCHES == D,
             "a space of {D} dimensions"
         );
-        parallel::in_pool(|| Self::build(problem, Body::new::<S, E>(energy), options))
-    }
-
-    fn build(problem: GiniProblem, body: Body, options: GiniOptions) -> Result<Self, BuildError> {
         options.validate()?;
-        let spring = |s: &Spring| Spring {
-            stiffness: s.stiffness * options.target_stiffness,
-            ..*s
-        };
+        problem.validate(D)?;
         let external = External {
-            springs: problem.springs.iter().map(spring).collect(),
+            springs: problem.absolute_springs::<S, E>(&energy, options.target_stiffness),
             ..Default::default()
         };
-        problem.validate(D, &external)?;
+        parallel::in_pool(|| Self::build(problem, external, Body::new::<S, E>(energy), options))
+    }
+
+    fn build(
+        problem: GiniProblem,
+        external: External,
+        body: Body,
+        options: GiniOptions,
+    ) -> Result<Self, BuildError> {
         let n = problem.start.len() / D;
         let mut used = vec![false; n];
         for &v in &problem.rest.vertices {
@@ -81,6 +82,13 @@ impl<const D: usize> Gini<D> {
         for (v, position) in problem.start.as_chunks::<D>().0.iter().enumerate() {
             x[slot[v] as usize] = *position;
             movable[slot[v] as usize] = !is_held[v];
+        }
+        let mut iterate = x.clone();
+        let primary = problem.primary.unwrap_or(problem.start);
+        for (v, position) in primary.as_chunks::<D>().0.iter().enumerate() {
+            if !is_held[v] {
+                iterate[slot[v] as usize] = *position;
+            }
         }
         let held: Vec<bool> = movable.iter().map(|m| !m).collect();
         let image = held_measure::<D>(problem.rest, &is_held, problem.start);
@@ -128,7 +136,7 @@ impl<const D: usize> Gini<D> {
             failures: 0,
             moved: f64::INFINITY,
             size,
-            iterate: x.clone(),
+            iterate,
             trial: x.clone(),
             trial_values: values.clone(),
             step: vec![[0.0; D]; elimination.free],

@@ -3,9 +3,12 @@
 use super::{Gini, build};
 use crate::optim::{BuildError, GiniStep, Status, Stopwatch};
 
-/// What part of the way that is free is taken, and how often half of it is tried.
-const SAFE: f64 = 0.8;
-const MOST_HALVINGS: usize = 5;
+/// How often ways are halved until they are free, before vertices stay where they are, and how often that is tried.
+const HALVINGS: usize = 6;
+const MOST_RETREATS: usize = 30;
+
+/// After so many steps in a row of which only such a part was taken x̄ begins anew.
+const MOST_ADVANCES: usize = 3;
 
 /// Ways that are not worth it, in units of the body's size.
 const LEAST_WAY: f64 = 1e-4;
@@ -73,13 +76,18 @@ impl<const D: usize> Gini<D> {
         }
     }
 
-    /// Where pins are on their way: shorter ones from x if x̂ has not been `reached`, longer ones if it has.
-    pub(super) fn lead_pins(&mut self, reached: bool) {
-        if self.arrived || self.contacts.is_none() {
+    /// After a step: x has `reached` x̂, or has `advanced` a part of the way, or has not moved. Pins go longer ways after
+    /// the first, from x on; after failures they go shorter ones, and x̄ begins anew where x is.
+    pub(super) fn lead_pins(&mut self, reached: bool, advanced: bool) {
+        if self.contacts.is_none() {
             return;
         }
         if reached {
             self.stride = (2.0 * self.stride).min(1.0);
+            if !self.arrived {
+                self.place_pins();
+            }
+        } else if advanced && !self.failures.is_multiple_of(MOST_ADVANCES) {
             self.place_pins();
         } else if self.failures.is_multiple_of(super::PATIENCE) {
             self.stride = (0.5 * self.stride).max(LEAST_STRIDE);
@@ -87,10 +95,10 @@ impl<const D: usize> Gini<D> {
         }
     }
 
-    /// Brings the contacts up to date; returns how many pairs collide between x and x̂, and when the first does.
-    pub(super) fn update_contacts(&mut self, step: &mut GiniStep) -> (usize, f64) {
+    /// Brings the contacts up to date; returns how many pairs collide between x and x̂.
+    pub(super) fn update_contacts(&mut self, step: &mut GiniStep) -> usize {
         let Some(contacts) = &mut self.contacts else {
-            return (0, 1.0);
+            return 0;
         };
         let clock = Stopwatch::start();
         let collisions = contacts.update(&mut self.set, &self.x, &self.trial, &self.movable);
@@ -99,27 +107,46 @@ impl<const D: usize> Gini<D> {
         collisions
     }
 
-    /// Where the polisher has failed: x goes as far towards x̂ as nothing collides before the time `first`, if that is
-    /// worth it. Pins that move get there by and by, and the next way is shorter. Returns whether it did.
-    pub(super) fn advance(&mut self, first: f64) -> bool {
+    /// Where the polisher has failed: vertices of pairs that still collide on the way from x to x̂, and of elements that
+    /// would get worse, go less and less of their way, all others the whole of it, until the way is free. Returns whether
+    /// any goes far enough to be worth it.
+    pub(super) fn advance(&mut self) -> bool {
         if self.contacts.is_none() {
             return false;
         }
         let to = self.trial.clone();
-        let mut part = SAFE * first;
-        for _ in 0..MOST_HALVINGS {
-            for (trial, (x, to)) in self.trial.iter_mut().zip(self.x.iter().zip(&to)) {
-                *trial = std::array::from_fn(|i| x[i] + part * (to[i] - x[i]));
-            }
+        let mut part = vec![1.0f64; to.len()];
+        for round in 0..MOST_RETREATS {
             self.elements.values(&self.trial, &mut self.trial_values);
-            if self.way(&self.trial) < LEAST_WAY * self.size {
-                return false;
+            let mut slots: Vec<u32> = Vec::new();
+            if let Some(contacts) = &mut self.contacts {
+                let pairs = contacts.colliding(&self.x, &self.trial, &self.movable);
+                slots.extend(pairs.as_flattened());
             }
-            if self.all_better() && self.is_clear() {
+            let values = self.trial_values.iter().zip(&self.values);
+            for (e, (&new, &old)) in values.enumerate() {
+                if self.elements.movable[e] && !(new >= old.min(0.5 * self.elements.offset(e))) {
+                    slots.extend(self.elements.slots[e]);
+                }
+            }
+            if slots.is_empty() {
+                if self.way(&self.trial) < LEAST_WAY * self.size || !self.is_clear() {
+                    return false;
+                }
                 self.accept(self.count_inverted());
+                // more than this is not known of where it settles
+                self.moved = f64::INFINITY;
                 return true;
             }
-            part *= 0.5;
+            slots.sort_unstable();
+            slots.dedup();
+            let factor = if round < HALVINGS { 0.5 } else { 0.0 };
+            for s in slots {
+                let s = s as usize;
+                part[s] *= factor;
+                self.trial[s] =
+                    std::array::from_fn(|i| self.x[s][i] + part[s] * (to[s][i] - self.x[s][i]));
+            }
         }
         false
     }
@@ -179,13 +206,8 @@ impl<const D: usize> Gini<D> {
     }
 
     /// No part of the boundary inside another body.
-    pub(super) fn is_disjoint(&self) -> bool {
+    fn is_disjoint(&self) -> bool {
         let contacts = self.contacts.as_ref();
         contacts.is_none_or(|contacts| contacts.overlaps(&self.x).is_empty())
-    }
-
-    /// Where overlap counts: pairs of facets of x that meet.
-    pub(super) fn intersections(&self) -> Option<usize> {
-        Some(self.contacts.as_ref()?.meeting(&self.x, 1000).len())
     }
 }

@@ -29,21 +29,26 @@ pub(super) struct Found {
 }
 
 impl Newton {
-    /// The longest step that inverts nothing, if inverting costs.
+    /// The longest step that inverts nothing, if inverting costs, and on which the boundary does not pass through
+    /// itself, if it must not.
     pub(super) fn longest_step(&mut self) -> f64 {
-        let longest = self.options.longest;
-        if !self.evaluation.shape.barrier {
+        let (fraction, longest) = (self.options.fraction, self.options.longest);
+        if !(self.evaluation.shape.barrier || self.keeps_positive) {
             return longest;
         }
-        step_bound(
+        let positive = step_bound(
             &self.evaluation.blocks,
             self.evaluation.elements(),
             &self.x,
             &self.direction,
-            self.options.fraction,
+            fraction,
             longest,
             &mut self.bounds,
-        )
+        );
+        match &mut self.apart {
+            Some(apart) => apart.bound(&self.x, &self.direction, fraction, positive),
+            None => positive,
+        }
     }
 
     /// Evaluates a step along the direction, into `trial` and `trial_gradient`.
