@@ -8,7 +8,7 @@ use crate::certificate::{Certificate, SolidCertificate};
 use crate::embedding::Flowed;
 use crate::energy::{Arap, Dirichlet, NeoHookean, StableNeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
-use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, PolishState};
+use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, TraceState};
 use crate::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
 use crate::space::{Plane, Solid};
@@ -205,7 +205,7 @@ impl Untangling {
         }
     }
 
-    /// Keeps the polisher's states of every step from here on, or no more.
+    /// Keeps the states inside of every step from here on, or no more.
     pub fn set_trace(&mut self, on: bool) {
         match &mut self.solver {
             Body::Plane(solver) => solver.set_trace(on),
@@ -214,15 +214,23 @@ impl Untangling {
     }
 
     /// x̂ of one of them, one position a vertex.
-    pub fn trace_positions(&self, state: &PolishState) -> Vec<DVec3> {
+    pub fn trace_positions(&self, state: &TraceState) -> Vec<DVec3> {
         self.in_space(&state.positions)
     }
 
     /// The polisher's states in the newest step; see [`Gini::trace`].
-    pub fn trace(&self) -> &[PolishState] {
+    pub fn trace(&self) -> &[TraceState] {
         match &self.solver {
             Body::Plane(solver) => solver.trace(),
             Body::Solid(solver) => solver.trace(),
+        }
+    }
+
+    /// The states of the quadratic problem in the newest step; see [`Gini::quadratic_trace`].
+    pub fn quadratic_trace(&self) -> &[TraceState] {
+        match &self.solver {
+            Body::Plane(solver) => solver.quadratic_trace(),
+            Body::Solid(solver) => solver.quadratic_trace(),
         }
     }
 

@@ -28,6 +28,39 @@ struct Dual<'a, const D: usize> {
     response: Vec<[f64; D]>,
     /// x̄(λ) − x̄.
     step: &'a mut [[f64; D]],
+    watch: Option<Watch<'a, D>>,
+}
+
+/// What the dual problem goes through.
+struct Watch<'a, const D: usize> {
+    path: &'a mut Vec<Visited<D>>,
+    /// x̄, which the step is about.
+    x: &'a [[f64; D]],
+    /// Of each row the place of its constraint, of so many.
+    places: &'a [u32],
+    constraints: usize,
+}
+
+/// A state of the dual problem, seen from the vertices.
+pub struct Visited<const D: usize> {
+    /// x̄(λ), by slot.
+    pub x: Vec<[f64; D]>,
+    /// Of every constraint: λ > 0?
+    pub active: Vec<bool>,
+}
+
+impl<const D: usize> Watch<'_, D> {
+    fn keep(&mut self, step: &[[f64; D]], lambda: &[f64]) {
+        let mut x = self.x.to_vec();
+        for (x, s) in x.iter_mut().zip(step) {
+            (0..D).for_each(|i| x[i] += s[i]);
+        }
+        let mut active = vec![false; self.constraints];
+        for (&place, &l) in self.places.iter().zip(lambda) {
+            active[place as usize] = l > 0.0;
+        }
+        self.path.push(Visited { x, active });
+    }
 }
 
 impl<const D: usize> Dual<'_, D> {
@@ -74,6 +107,12 @@ impl<const D: usize> Quadratic for Dual<'_, D> {
             *x += step * r;
         }
     }
+
+    fn visited(&mut self, lambda: &[f64]) {
+        if let Some(watch) = &mut self.watch {
+            watch.keep(self.step, lambda);
+        }
+    }
 }
 
 /// The squared norm of the gradient of an undeformed regular element's constraint.
@@ -99,13 +138,15 @@ pub struct Primal<'a> {
 }
 
 /// Solves (10) about `x`, warm-started by the multipliers of the constraints, which it sets. `step` comes as the
-/// negative gradient b − A x̄ of (6a) on the unknowns, and leaves as x̄(λ) − x̄ (9). Returns the iterations.
+/// negative gradient b − A x̄ of (6a) on the unknowns, and leaves as x̄(λ) − x̄ (9). Where a `path` is wanted, x̄(λ) of
+/// the start and of every iteration is appended to it. Returns the iterations.
 pub fn global_step<const D: usize>(
     constraints: &mut [Constraint],
     x: &[[f64; D]],
     primal: Primal,
     step: &mut [[f64; D]],
     max_iterations: usize,
+    path: Option<&mut Vec<Visited<D>>>,
 ) -> usize {
     let unknowns = step.len() as u32;
     if unknowns == 0 {
@@ -135,6 +176,15 @@ pub fn global_step<const D: usize>(
     }
     Dual::spread(&rows, &lambda, step);
     factor.solve_in_place(step.as_flattened_mut(), D);
+    let mut watch = path.map(|path| Watch {
+        path,
+        x,
+        places: &places,
+        constraints: constraints.len(),
+    });
+    if let Some(watch) = &mut watch {
+        watch.keep(step, &lambda);
+    }
     if rows.is_empty() || max_iterations == 0 {
         return 0;
     }
@@ -152,6 +202,7 @@ pub fn global_step<const D: usize>(
         factor,
         response: vec![[0.0; D]; step.len()],
         step,
+        watch,
     };
     let options = LbfgsbOptions {
         history: HISTORY,

@@ -50,4 +50,4 @@ pub use options::GiniOptions;
 pub use outcome::Outcome;
 pub use problem::GiniProblem;
 pub use solver::Gini;
-pub use trace::PolishState;
+pub use trace::{TraceContact, TraceState};

@@ -12,7 +12,7 @@ use super::elements::Elements;
 use super::polisher::polish;
 use super::problem::not_positive;
 use super::set::ConstraintSet;
-use super::trace::PolishState;
+use super::trace::Trace;
 use super::zones::Zones;
 use crate::optim::{
     Criterion, GiniStep, Inspection, Phase, PhaseKind, PolishStep, SolveError, Solver, Status,
@@ -69,8 +69,8 @@ pub struct Gini<const D: usize> {
     pub(super) trial_values: Vec<f64>,
     step: Vec<[f64; D]>,
     best: Best<D>,
-    /// The polisher's states of the newest step, where they are wanted.
-    pub(super) trace: Option<Vec<PolishState>>,
+    /// The states inside of the newest step, where they are wanted.
+    pub(super) trace: Option<Trace<D>>,
     positions: Vec<f64>,
     pub(super) hopeless: Vec<u32>,
     pub(super) hopeless_measure: Option<f64>,
@@ -122,7 +122,9 @@ impl<const D: usize> Gini<D> {
             contacts.skip(&mut self.set, &self.iterate);
         }
         step.constraints = self.set.list.len();
+        self.begin_trace();
         step.qp_iterations = self.primary_step();
+        self.trace_quadratic();
         if !self.iterate.as_flattened().iter().all(|x| x.is_finite()) {
             self.begin_anew();
         }
@@ -132,12 +134,13 @@ impl<const D: usize> Gini<D> {
         }
         step.active = self.set.list.len();
         let global = Phase::new(PhaseKind::Global, step.qp_iterations as u32, clock);
+        let global = self.without_trace(global);
 
         let clock = Stopwatch::start();
         let reached = self.polish(&mut step);
         self.lead_pins(reached, step.accepted);
         let polished = step.polish.len() as u32;
-        step.polish_milliseconds = clock.milliseconds();
+        step.polish_milliseconds = clock.milliseconds() - self.trace_milliseconds();
         self.publish();
         let done = self.is_done();
         self.report.iteration = iteration;
@@ -173,7 +176,7 @@ impl<const D: usize> Gini<D> {
         }
         self.report.seconds += begun.seconds();
         let evaluate = Phase::new(PhaseKind::Evaluate, polished, clock);
-        self.report.phases = vec![local, global, evaluate];
+        self.report.phases = vec![local, global, self.without_trace(evaluate)];
         Ok(())
     }
 
@@ -206,6 +209,7 @@ impl<const D: usize> Gini<D> {
             self.admm.primal(),
             &mut self.step,
             self.options.max_qp_iterations,
+            self.trace.as_mut().and_then(Trace::path),
         );
         for (x, s) in self.iterate.iter_mut().zip(&self.step) {
             (0..D).for_each(|i| x[i] += s[i]);
@@ -217,7 +221,6 @@ impl<const D: usize> Gini<D> {
     /// Iterations of the polisher from x̄ on, until x̂ may be the next x (§5.1). Returns whether it is.
     fn polish(&mut self, step: &mut GiniStep) -> bool {
         self.trial.copy_from_slice(&self.iterate);
-        self.begin_trace();
         if let Some(contacts) = &mut self.contacts {
             contacts.forget();
         }
@@ -331,11 +334,17 @@ impl<const D: usize> Gini<D> {
 
     /// Moves components that nothing holds back to where their centroids were: the Laplacian does not know.
     fn keep_centroids(&mut self) {
+        let mut x = std::mem::take(&mut self.iterate);
+        self.keep_centroids_of(&mut x);
+        self.iterate = x;
+    }
+
+    pub(super) fn keep_centroids_of(&self, x: &mut [[f64; D]]) {
         for (slots, centroid) in &self.floating {
-            let now = build::centroid(slots, &self.iterate);
+            let now = build::centroid(slots, x);
             for &s in slots {
                 for i in 0..D {
-                    self.iterate[s as usize][i] += centroid[i] - now[i];
+                    x[s as usize][i] += centroid[i] - now[i];
                 }
             }
         }

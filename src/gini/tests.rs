@@ -198,6 +198,7 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
             Primal { factor, compliance },
             &mut step,
             400,
+            None,
         );
         // the constraints are met to a tenth of η, as the solver promises
         for (row, right) in rows.iter().zip(&right) {
@@ -215,7 +216,10 @@ fn the_dual_problem_ends_where_brute_force_does<const D: usize>() {
         let again = constraints.clone();
         let mut step = b.clone();
         let primal = Primal { factor, compliance };
-        assert_eq!(global_step(&mut constraints, &x, primal, &mut step, 400), 0);
+        assert_eq!(
+            global_step(&mut constraints, &x, primal, &mut step, 400, None),
+            0
+        );
         assert_eq!(constraints, again);
         solved += usize::from(constraints.iter().any(|c| c.lambda > 0.0));
     }

@@ -45,6 +45,7 @@ export interface Calls {
   deformed: [{ solver: number }, DeformResult<SolidCertificate | Certificate>];
   /** `mesh` is a solid, or a surface that lies in a plane. */
   untangle: [{ mesh: number; solver: number; options: UntangleOptions; frames: FramePrecision }, UntangleInfo];
+  movePins: [{ solver: number; targets: Targets }, undefined];
   primaryPositions: [{ solver: number }, Float64Array];
   untangled: [{ solver: number }, UntangleResult<SolidCertificate | Certificate>];
   mixedInteger: [{ solver: number; input: MixedIntegerInput; options: Partial<MixedIntegerOptions> }, MixedIntegerInfo];

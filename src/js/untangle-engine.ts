@@ -1,11 +1,11 @@
 // Untangling over one instance of the wasm module.
 import type { WasmBindings } from './engine.js';
 import { guard } from './guard.js';
-import { needHandles } from './input.js';
+import { needHandles, needTargets } from './input.js';
 import type * as Bindings from './single/foldfree.js';
 import type { CoreSolid } from './solid-engine.js';
-import { dispose, type Certificate, type FramePrecision, type SolidCertificate, type StepReport } from './types.js';
-import type { Flowed, PolishState, UntangleInfo, UntangleOptions, UntangleResult, UntangleStep } from './untangle-types.js';
+import { dispose, type Certificate, type FramePrecision, type SolidCertificate, type StepReport, type Targets } from './types.js';
+import type { Contacts, Flowed, PolishState, TraceState, UntangleInfo, UntangleOptions, UntangleResult, UntangleStep } from './untangle-types.js';
 
 /** What can be untangled. */
 type Body = { solid: CoreSolid; mesh?: never } | { mesh: { handle: Bindings.WasmMesh }; solid?: never };
@@ -67,6 +67,15 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
     return guard(() => this.#withPositions(this.#handle.report()));
   }
 
+  /**
+   * With `overlap`, between two steps: has pinned vertices move to other places, and the run go on, as soon as the way
+   * there is free. On an error nothing has changed.
+   */
+  movePins(targets: Targets): void {
+    const { vertices, positions } = needTargets(targets);
+    guard(() => this.#handle.movePins(vertices, positions));
+  }
+
   /** x̄, the primary solver's state, which may fold, n × 3. */
   primaryPositions(): Float64Array {
     return guard(() => this.#handle.primaryPositions());
@@ -108,15 +117,30 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
       ...report,
       positions: single ? handle.positionsSingle() : handle.positions(),
       ...(this.#primary && { primary: single ? handle.primaryPositionsSingle() : handle.primaryPositions() }),
-      ...(this.#trace && { trace: this.#states() }),
+      ...(this.#trace && this.#states()),
     };
   }
 
-  #states(): PolishState[] {
+  #states(): { trace: PolishState[]; quadratic: TraceState[] } {
     const handle = this.#handle;
-    return Array.from({ length: handle.traceLength }, (_, k) => {
-      const [inverted = 0, violated = 0] = handle.traceCounts(k);
-      return { positions: handle.tracePositions(k), inverted, violated, zones: handle.traceZones(k) };
-    });
+    const [first = 0, second = 0] = handle.traceLengths;
+    const state = (k: number): TraceState => {
+      const [inverted = 0, violated = 0, meeting] = handle.traceCounts(k);
+      return {
+        positions: handle.tracePositions(k), inverted, violated, ...(meeting !== undefined && { meeting }), contacts: contactsOf(handle.traceContacts(k)),
+      };
+    };
+    return {
+      quadratic: Array.from({ length: first }, (_, k) => state(k)),
+      trace: Array.from({ length: second }, (_, k) => ({ ...state(first + k), zones: handle.traceZones(first + k) })),
+    };
   }
+}
+
+/** From seven numbers each. */
+function contactsOf(numbers: Uint32Array): Contacts {
+  const column = (j: number) => numbers.filter((_, i) => i % 7 === j);
+  return {
+    vertices: numbers.filter((_, i) => i % 7 < 4), edges: Uint8Array.from(column(4)), active: Uint8Array.from(column(5)), zones: column(6),
+  };
 }

@@ -8,18 +8,41 @@ export type { Flowed, GiniStep, Outcome, PolishStep, UntangleEnergy, UntangleSet
 export type UntangleOptions = Partial<UntangleSettings> & Handles & {
   /** Send x̄, the primary solver's state, with each step (default false). */
   primary?: boolean;
-  /** Send the states that the polisher went through with each step (default false). */
+  /** Send the states that the quadratic problem and the polisher went through with each step (default false). */
   trace?: boolean;
 };
 
-/** What the polisher works on: x̂ of the paper. */
-export interface PolishState {
+/** Pairs of parts of the boundary that must not pass through each other. */
+export interface Contacts {
+  /** k × 4: a vertex and those of a face (in the plane those of an edge, the last twice), or those of two edges. */
+  vertices: Uint32Array;
+  /** 1 of two edges, 0 of a vertex and a face or edge. */
+  edges: Uint8Array;
+  /**
+   * 1 where, in the quadratic problem, the multiplier is not 0; in the polisher, where the two collide on the way from x to
+   * x̂. Where it is 0 they are proximal: they did collide before.
+   */
+  active: Uint8Array;
+  /** In the polisher: the zone of violated constraints that each is in, the first being 1; 0: in none. */
+  zones: Uint32Array;
+}
+
+/** What is worked on inside a step: x̄ or x̂ of the paper. */
+export interface TraceState {
   /** n × 3, interleaved. */
   positions: Float64Array;
   /** Elements that are inverted or flat. */
   inverted: number;
-  /** Constraints below their η. */
+  /** Elements below their η. */
   violated: number;
+  /** With `overlap`: pairs of boundary facets that meet, exactly, up to 100 000. */
+  meeting?: number;
+  /** The contacts among the constraints; there are none without `overlap`. */
+  contacts: Contacts;
+}
+
+/** What the polisher works on: x̂ of the paper. */
+export interface PolishState extends TraceState {
   /** The zone of violated constraints that each element is in, the first being 1; 0: in none. */
   zones: Uint32Array;
 }
@@ -30,6 +53,11 @@ export interface UntangleStep extends Frame {
   primary?: Float64Array | Float32Array;
   /** With `trace`: x̂ before each iteration of the polisher, and after the last. The first is x̄ after the quadratic problem. */
   trace?: PolishState[];
+  /**
+   * With `trace`: x̄ of the quadratic problem with the multipliers of the step before, and after each iteration of L-BFGS-B;
+   * the last is the first of the polisher.
+   */
+  quadratic?: TraceState[];
 }
 
 /** What is known of an untangling before its first step. */

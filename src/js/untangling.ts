@@ -1,7 +1,8 @@
 // What is being untangled in the worker.
 import type { Client } from './client.js';
+import { needTargets } from './input.js';
 import { Stepper, type Wait } from './solver.js';
-import type { Certificate, SolidCertificate } from './types.js';
+import type { Certificate, SolidCertificate, Targets } from './types.js';
 import type { Flowed, UntangleInfo, UntangleResult, UntangleStep } from './untangle-types.js';
 
 /** A solid, or (with `Certificate`) triangles in their plane, being untangled in the worker. */
@@ -14,6 +15,16 @@ export class Untangling<C extends SolidCertificate | Certificate = SolidCertific
     super(client, generation, id, info, wait, signal);
     this.notes = info.notes;
     this.flowed = info.flowed;
+  }
+
+  /**
+   * With `overlap`: has pinned vertices move to other places, also while a run goes on, between two of its steps. x follows
+   * as soon as the way there is free, and the status goes back to `running`; a run that has ended is to be started again.
+   * On an error nothing has changed.
+   */
+  async movePins(targets: Targets): Promise<void> {
+    await this.callWith('movePins', { targets: needTargets(targets) });
+    this.awake();
   }
 
   /** x̄, the primary solver's state, which may fold, n × 3. */

@@ -202,6 +202,7 @@ function serve(port: Port): void {
       const { start, notes, flowed, setupSeconds } = made;
       return { start, notes, flowed, setupSeconds };
     },
+    movePins: ({ solver, targets }) => void untangling(solver).movePins(targets),
     primaryPositions: ({ solver }) => untangling(solver).primaryPositions(),
     untangled: ({ solver }) => untangling(solver).result(),
     mixedInteger({ solver, input, options }): MixedIntegerInfo {

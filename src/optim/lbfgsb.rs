@@ -76,6 +76,7 @@ pub fn minimize<Q: Quadratic>(
             direction[i] *= step;
             curvature[i] *= step;
         }
+        quadratic.visited(lambda);
         model.push(&direction, &curvature);
     }
     options.max_iterations
@@ -87,6 +88,8 @@ pub trait Quadratic {
     fn apply(&mut self, direction: &[f64], out: &mut [f64]);
     /// λ has moved by `step` times the direction of the last [`Self::apply`].
     fn moved(&mut self, step: f64);
+    /// An iteration has ended at this λ.
+    fn visited(&mut self, _lambda: &[f64]) {}
 }
 
 /// The largest component of the projected gradient.

@@ -7,8 +7,10 @@ use super::options::untangle_options;
 use super::report::StepReport;
 use super::solid::WasmSolid;
 use super::to_js;
+use crate::collision::Pair;
 use crate::deformation::Untangling;
-use crate::gini::PolishState;
+use crate::gini::TraceState;
+use glam::DVec3;
 use js_sys::{Float32Array, Float64Array, Uint32Array};
 use wasm_bindgen::prelude::*;
 
@@ -103,36 +105,60 @@ impl WasmUntangling {
         single3(&self.inner.primary_positions())
     }
 
-    /// Keeps the polisher's states of every step from here on, or no more.
+    /// With `overlap`: has pinned vertices move to these points (k × 3), and the run go on.
+    #[wasm_bindgen(js_name = movePins)]
+    pub fn move_pins(&mut self, vertices: &[u32], positions: &[f64]) -> Fallible<()> {
+        let targets = targets(vertices, positions)?;
+        let pins: Vec<(u32, DVec3)> = targets.iter().map(|t| (t.vertex, t.position)).collect();
+        self.inner.move_pins(&pins).map_err(thrown)
+    }
+
+    /// Keeps the states inside of every step from here on, or no more.
     #[wasm_bindgen(js_name = setTrace)]
     pub fn set_trace(&mut self, on: bool) {
         self.inner.set_trace(on);
     }
 
-    /// How many of them the newest step has.
-    #[wasm_bindgen(getter, js_name = traceLength)]
-    pub fn trace_length(&self) -> usize {
-        self.inner.trace().len()
+    /// How many of them the newest step has: those of the quadratic problem, which come first, and the polisher's.
+    #[wasm_bindgen(getter, js_name = traceLengths)]
+    pub fn trace_lengths(&self) -> Vec<u32> {
+        let [first, second] = self.states().map(<[TraceState]>::len);
+        vec![first as u32, second as u32]
     }
 
-    /// x̂ of one of them, n × 3.
+    /// x̄ or x̂ of one of them, n × 3.
     #[wasm_bindgen(js_name = tracePositions)]
     pub fn trace_positions(&self, state: usize) -> Fallible<Float64Array> {
         let state = self.state(state)?;
         Ok(flat3(&self.inner.trace_positions(state)))
     }
 
-    /// The zone of violated constraints that each element is in, the first being 1; 0: in none.
+    /// The zone of violated constraints that each element is in, the first being 1; 0: in none. Of the polisher's states.
     #[wasm_bindgen(js_name = traceZones)]
     pub fn trace_zones(&self, state: usize) -> Fallible<Uint32Array> {
         Ok(Uint32Array::from(&*self.state(state)?.zones))
     }
 
-    /// Its elements that are inverted or flat, and its constraints below their η.
+    /// Its elements that are inverted or flat, its elements below their η, and, with `overlap`, pairs of boundary
+    /// facets that meet.
     #[wasm_bindgen(js_name = traceCounts)]
     pub fn trace_counts(&self, state: usize) -> Fallible<Vec<u32>> {
         let state = self.state(state)?;
-        Ok(vec![state.inverted as u32, state.violated as u32])
+        let counts = [Some(state.inverted), Some(state.violated), state.meeting];
+        Ok(counts.iter().flatten().map(|&n| n as u32).collect())
+    }
+
+    /// The contacts in its constraint set, seven numbers each: the vertices, 1 for two edges (0: a vertex and a facet), 1
+    /// where it is active, its zone.
+    #[wasm_bindgen(js_name = traceContacts)]
+    pub fn trace_contacts(&self, state: usize) -> Fallible<Vec<u32>> {
+        let mut numbers = Vec::new();
+        for c in &self.state(state)?.contacts {
+            numbers.extend(c.vertices);
+            let edges = c.pair == Pair::EdgeEdge;
+            numbers.extend([edges.into(), c.active.into(), c.zone]);
+        }
+        Ok(numbers)
     }
 
     /// What is known of x, by exact predicates.
@@ -175,8 +201,13 @@ impl WasmUntangling {
 }
 
 impl WasmUntangling {
-    fn state(&self, state: usize) -> Fallible<&PolishState> {
+    fn states(&self) -> [&[TraceState]; 2] {
+        [self.inner.quadratic_trace(), self.inner.trace()]
+    }
+
+    fn state(&self, state: usize) -> Fallible<&TraceState> {
         let missing = || invalid_argument("state", "the newest step has no such state");
-        self.inner.trace().get(state).ok_or_else(missing)
+        let mut all = self.states().into_iter().flatten();
+        all.nth(state).ok_or_else(missing)
     }
 }

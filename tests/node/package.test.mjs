@@ -66,6 +66,8 @@ describe('the packed package', () => {
       await foldfree.deform(solid, { energy: 'rubber' });
       const freed = await foldfree.untangle(solid, { energy: 'stable-neo-hookean', pins: [1, 2], start: new Float64Array(), primary: true, trace: true });
       for await (const { gini, trace, primary } of freed) { const zones: Uint32Array | undefined = trace?.[0]?.zones; void [gini?.polish[0]?.violated, zones, primary]; }
+      for await (const { quadratic } of freed) { const [state] = quadratic ?? []; const held: Uint8Array | undefined = state?.contacts.active; const crossing: number | undefined = state?.meeting; void [held, crossing]; }
+      await freed.movePins({ vertices: Uint32Array.of(1), positions: new Float64Array(3) });
       const stuck: number[] = (await freed.result()).outcome.notPositive;
       const flat: boolean = (await (await foldfree.untangle(mesh, { pins: [0] })).result()).certificate.globallyInjective;
       // @ts-expect-error there is no such energy

@@ -105,10 +105,10 @@ describe('untangling in this thread', () => {
       assert.ok(gini.leastOffset <= gini.firstOffset && gini.polishMilliseconds >= 0);
       assert.equal(trace.length, gini.polish.length + 1);
       assert.equal(inverted(rest, trace[0].positions), gini.invertedIterate);
-      gini.polish.forEach(({ inverted, violated, zones }, k) => {
-        assert.equal(inverted(rest, trace[k].positions), inverted, `iteration ${k}`);
-        assert.deepEqual([trace[k].inverted, trace[k].violated, Math.max(...trace[k].zones)], [inverted, violated, zones]);
-        assert.ok(trace[k].zones.filter((zone) => zone > 0).length >= violated && violated >= inverted);
+      gini.polish.forEach(({ inverted: wrong, violated, zones }, k) => {
+        assert.equal(inverted(rest, trace[k].positions), wrong, `iteration ${k}`);
+        assert.deepEqual([trace[k].inverted, trace[k].violated, Math.max(...trace[k].zones)], [wrong, violated, zones]);
+        assert.ok(trace[k].zones.filter((zone) => zone > 0).length >= violated && violated >= wrong);
       });
       polished += gini.polish.length;
       if (gini.accepted) assert.deepEqual(trace.at(-1).positions, positions);

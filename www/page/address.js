@@ -3,7 +3,7 @@ import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
 import { isFigure } from './figures.js';
 import { LIM_ENERGIES, MATERIALS } from './materials.js';
 import { WINDOW } from './round-problems.js';
-import { ENERGIES, HELD, STARTS } from './untangle-problems.js';
+import { ENERGIES, HELD, STARTS, isFlat } from './untangle-problems.js';
 
 /** The modes, the first of which the page opens on. */
 export const MODES = ['flatten', 'deform', 'untangle', 'compare', 'round'];
@@ -123,7 +123,7 @@ export function readAddress(mode = modeOf(), search = location.search) {
     state.method = 'lim';
     if (!['held', 'drag'].includes(state.preset)) state.preset = 'drag';
   }
-  if (mode === 'untangle' && isFigure(state.body) && !ENERGIES[state.energy].planar) state.energy = 'arap';
+  if (mode === 'untangle' && isFlat(state.body) && !ENERGIES[state.energy].planar) state.energy = 'arap';
   const steps = Number(asked.get(STEPS[mode]));
   if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);
   return state;

@@ -108,9 +108,12 @@ class BenchBoard {
     const zones = step.zoneOf ? Float32Array.from(step.zoneOf) : new Float32Array();
     this.handle.pushMoment(
       Float64Array.of(...numbers(step), ...moment(step)), phases(step), single(step.trial), zones, single(step.result), single(step.primary),
+      contactNumbers(step.contacts),
     );
   }
 
+  /** Whether what is held of an untangling may be dragged. */
+  movable(on) { this.handle.setMovable(on); }
   /** Which state of an untangling is shown. */
   state(name) { this.handle.setState(name); }
   /** Looks at where these positions (n×3) are. */
@@ -186,14 +189,21 @@ const parameters = (lim) => (lim ? [lim.alpha, lim.mu, lim.sigma, lim.positional
 const PARTS = ['start', 'local', 'quadratic', 'polish', 'outcome'];
 
 /** Which part of which step of an untangling this is, and what is wrong then. */
-function moment({ part, k, of, counts, violated = -1, zones, gini }) {
+function moment({ part, k, counts, violated = -1, meeting = -1, zones, gini }) {
   const {
     qpIterations = 0, constraints = 0, active = 0, accepted = false, leastOffset = 0, firstOffset = 0, reducedOffsets = 0, smallestMeasure = NaN,
   } = gini ?? {};
   return [
-    PARTS.indexOf(part), k, of, ...counts, violated, zones, qpIterations, constraints, active, accepted ? 1 : 0, leastOffset, firstOffset,
-    reducedOffsets, smallestMeasure,
+    PARTS.indexOf(part), k, gini?.polish.length ?? 0, ...counts, violated, zones, qpIterations, constraints, active, accepted ? 1 : 0, leastOffset, firstOffset,
+    reducedOffsets, smallestMeasure, meeting,
   ];
+}
+
+/** Seven numbers a contact: its vertices, two edges or not, active or not, its zone. */
+function contactNumbers({ vertices, edges, active, zones } = { edges: [] }) {
+  const out = new Uint32Array(7 * edges.length);
+  for (let i = 0; i < edges.length; i += 1) out.set([...vertices.subarray(4 * i, 4 * i + 4), edges[i], active[i], zones[i]], 7 * i);
+  return out;
 }
 
 const phases = (step) => Float64Array.from(

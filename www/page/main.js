@@ -159,6 +159,7 @@ function connect() {
     r: act('reset'), f: () => page.canvas?.fit(), w: () => flip('wireframe'), c: () => flip('tinted'), e: () => flip('gap'), x: () => flip('seconds'),
     p: project, t: flipTheme, o: () => $('file').click(), '?': help, Escape: () => { clearNotice(); if (projecting()) project(); },
     m: () => switchTo(MODES[(MODES.indexOf(page.active.name) + 1) % MODES.length]),
+    g: act('further'),
     s: () => (page.active.nextState ? page.active.nextState() : page.active.setClock?.(page.active.wanted.clock === 'seconds' ? 'iterations' : 'seconds')),
     h: hand('next'), j: hand('nudge', -1, 0), l: hand('nudge', 1, 0), i: hand('nudge', 0, 1), k: hand('nudge', 0, -1),
     u: hand('twist', -1), y: hand('twist', 1), b: hand('nextPlace'), n: hand('pinPlace'), Delete: hand('release', false), Backspace: hand('release', false),

@@ -105,6 +105,8 @@ export class Mode {
   async beforeStep() {}
   /** The solver has nothing more to do. */
   finish() {}
+  /** How long what is shown stays while it plays, in units of the pace. */
+  get beat() { return 1; }
   /** Whether there is more to do than the solver knows of. */
   get restless() { return false; }
 
@@ -236,7 +238,7 @@ export class Mode {
       if (!more && mayGo()) this.pause();
       if (pace > 0) { // else as fast as it can: the worker steps, the page draws the newest every frame
         await nextFrame();
-        due = Math.max(due + 1000 / pace, performance.now() - 100);
+        due = Math.max(due + (this.beat * 1000) / pace, performance.now() - 100);
         while (mayGo() && performance.now() < due) await nextFrame();
       }
     }
@@ -253,7 +255,7 @@ export class Mode {
     this.#film = true;
     this.setPlaying(true);
     while (mayGo() && this.shown < this.records.length - 1) {
-      const wait = 1000 / (Number($('pace').value) || 60);
+      const wait = (this.beat * 1000) / (Number($('pace').value) || 60);
       this.show(this.shown + 1);
       const until = performance.now() + wait;
       do await nextFrame(); while (mayGo() && performance.now() < until);

@@ -21,10 +21,11 @@ export function drawStatus(mode) {
   const time = rate ? `${Math.round(rate)} steps a second` : `${number(stepMilliseconds(records, shown), 2)} ms`;
   const parts = [
     part('quiet', record.where ?? `iteration ${record.iteration}${newest > shown ? ` of ${records[newest].iteration}` : ''}`),
-    part('', ...(record.lead ? [record.lead, part('lead', ' is lowest,'), ' '] : []), record.energyText ?? `energy ${number(record.energy)}`),
+    part(record.where ? 'detail' : '', ...(record.lead ? [record.lead, part('lead', ' is lowest,'), ' '] : []), record.energyText ?? `energy ${number(record.energy)}`),
     record.fate
       ? part(`inverted ${record.fate.good ? 'good' : ''}`, record.fate.text)
       : part(`inverted ${record.inverted > 0 ? 'bad' : 'good'}`, ...hatch, `${whole(record.inverted)} inverted`),
+    ...(record.touching ?? []).map((words, i) => part(i === 0 && record.meeting > 0 ? 'touching bad' : 'touching quiet', words)),
     ...(record.iteration > 0 && !record.where ? [part('quiet time', time)] : []),
   ];
   $('status').replaceChildren(...parts.flatMap((element, i) => (i ? [part('dot', ' · '), element] : [element])));

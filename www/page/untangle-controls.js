@@ -1,4 +1,5 @@
 // The controls of the Untangle mode.
+import { CONTACTS, MOST_ELEMENTS } from './contact-problems.js';
 import { FIGURES } from './figures.js';
 import { reflectSight } from './sight.js';
 import { ENERGIES, HELD, STARTS } from './untangle-problems.js';
@@ -27,7 +28,8 @@ export class UntangleControls {
       return made;
     };
     const figures = Object.entries(FIGURES).map(([name, { title }]) => ({ name, title, description: 'Triangles in the plane' }));
-    $('body').replaceChildren(group('Solids', shapes), group('In the plane', figures));
+    const apart = Object.entries(CONTACTS).map(([name, { title, description }]) => ({ name, title, description }));
+    $('body').replaceChildren(group('Solids', shapes), group('In the plane', figures), group('Kept apart', apart));
     this.reflect();
   }
 
@@ -40,6 +42,7 @@ export class UntangleControls {
     $('held').addEventListener('change', () => mode.change('held', $('held').value));
     $('untangle-start').addEventListener('change', () => mode.change('start', $('untangle-start').value));
     $('untangle-energy').addEventListener('change', () => mode.change('energy', $('untangle-energy').value));
+    $('further').addEventListener('click', () => mode.further());
     for (const button of $('states').children) button.addEventListener('click', () => mode.look('state', button.dataset.state));
   }
 
@@ -66,7 +69,20 @@ export class UntangleControls {
     // what a person brought is held, and starts, as the files say
     $('held').disabled = Boolean(source.pins || source.files?.length > 1);
     $('untangle-start').disabled = source.files?.length > 1;
+    const { apart } = this.#mode;
+    // bodies that are kept apart have their own start, and are small
+    for (const id of ['held', 'untangle-start']) $(id).closest('label').classList.toggle('off', apart !== undefined);
+    for (const one of sizes.options) one.disabled = apart !== undefined && Number(one.value) > MOST_ELEMENTS;
+    this.reflectHandles();
     this.look();
+  }
+
+  /** Shows whether what is held can go on. */
+  reflectHandles() {
+    const { apart, mayHold } = this.#mode;
+    $('further').closest('.group').classList.toggle('off', !apart);
+    $('further').textContent = apart?.further ?? '';
+    $('further').disabled = !mayHold;
   }
 
   /** Shows how the body is looked at. */

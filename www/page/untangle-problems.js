@@ -1,4 +1,5 @@
 // Folded bodies to untangle: what of them is held, where, and where everything else starts. No DOM here.
+import { CONTACTS, handlesOf, keepsApart, moved } from './contact-problems.js';
 import { FIGURES, isFigure } from './figures.js';
 import { bounds, collapsed, ends, pick, scattered, scene } from './presets.js';
 
@@ -26,8 +27,31 @@ export const ENERGIES = {
   'stable-neo-hookean': { title: 'stable neo-Hookean', planar: false },
 };
 
-/** A body of the library's, or a figure of the page's. */
-export const generate = (foldfree, { body, size }) => (isFigure(body) ? foldfree.mesh(FIGURES[body].make(size)) : foldfree.generateSolid(body, size));
+/** Whether a name is that of triangles in a plane. */
+export const isFlat = (body) => isFigure(body) || (keepsApart(body) && CONTACTS[body].planar === true);
+
+/** A body of the library's, or a figure or bodies of the page's. */
+export function generate(foldfree, { body, size }) {
+  if (isFigure(body)) return foldfree.mesh(FIGURES[body].make(size));
+  if (!keepsApart(body)) return foldfree.generateSolid(body, size);
+  const arrays = CONTACTS[body].make(size);
+  return arrays.indices ? foldfree.mesh(arrays) : foldfree.solid(arrays);
+}
+
+/**
+ * `{ pins, start, groups, targets, overlap }` of bodies that are kept apart: they start at rest, and what is held
+ * (`groups` of vertices, and where each is to be) goes on its first move.
+ */
+export function apartOf(body, name) {
+  const problem = CONTACTS[name];
+  const groups = handlesOf(problem, body).map((vertices, i) => {
+    const points = pick(body.positions, vertices);
+    return { vertices, at: i === problem.moved ? moved(problem, points, 1) : points };
+  });
+  const pins = Uint32Array.from(groups.flatMap(({ vertices }) => [...vertices]));
+  const targets = { vertices: pins, positions: Float64Array.from(groups.flatMap(({ at }) => [...at])) };
+  return { pins, start: Float64Array.from(body.positions), groups, targets, overlap: true };
+}
 
 /** The vertices of the outside: of the skin of a solid, of the rim of triangles. */
 export function outsideOf({ positions, surface, indices }) {

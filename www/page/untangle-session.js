@@ -1,5 +1,6 @@
 // What is being untangled: one body, one solver, and every part of every step. No DOM here.
-import { generate, invertedOf, problemOf, readPins } from './untangle-problems.js';
+import { keepsApart } from './contact-problems.js';
+import { apartOf, generate, invertedOf, problemOf, readPins } from './untangle-problems.js';
 
 /** Formats that may hold triangles instead of tetrahedra. */
 const SURFACES = ['obj', 'off', 'ply', 'stl', 'mesh', 'msh', 'vtk'];
@@ -16,6 +17,11 @@ export class UntangleSession {
   #generation = 0;
   #queue = []; // parts of the newest step that were not shown yet
   #reports = []; // of the steps
+  #targets; // where what is held is to go, when the solver does not know yet
+  #sending;
+  #moved = false; // whether the solver was told of other targets since its newest step began
+  #count = 0; // steps of the solver
+  #shownResult;
   #last; // { result, primary, report, folded }: what the newest step led to; `folded`: inverted elements of `primary`, if known
 
   records = [];
@@ -47,7 +53,17 @@ export class UntangleSession {
 
   /** Whether all parts of the last step were shown. */
   get finished() {
-    return this.#queue.length === 0 && this.newest !== undefined && this.newest.status !== 'running';
+    return this.#queue.length === 0 && !this.#moved && this.#targets === undefined && this.newest !== undefined && this.newest.status !== 'running';
+  }
+
+  /** Whether bodies are kept from passing through each other and themselves. */
+  get keepsApart() {
+    return this.problem?.groups !== undefined;
+  }
+
+  /** x, the newest state that was handed out and shown (n×3). */
+  get positions() {
+    return this.#shownResult;
   }
 
   /** Reads a file: as a solid where its format can hold one, else as triangles. */
@@ -100,8 +116,10 @@ export class UntangleSession {
     let made;
     let known; // of the start
     try {
-      made = problemOf(body, { held, start }, given);
-      solver = await this.#foldfree.untangle(body, { ...made, energy, primary: true, trace: true });
+      made = !source.files && keepsApart(source.body) ? apartOf(body, source.body) : problemOf(body, { held, start }, given);
+      const { groups, ...handles } = made;
+      // the first state in which nothing crosses will do: a person may want to go on from there
+      solver = await this.#foldfree.untangle(body, { ...handles, ...(groups && { settle: 0 }), energy, primary: true, trace: true });
       known = await solver.result();
     } catch (error) {
       solver?.free();
@@ -121,13 +139,14 @@ export class UntangleSession {
       notes: [...body.notes, ...solver.notes], setupSeconds: solver.setupSeconds,
     };
     this.result = undefined;
-    [this.#queue, this.#reports] = [[], []];
+    [this.#queue, this.#reports, this.#count, this.#targets, this.#moved] = [[], [], 0, undefined, false];
     const { positions } = solver.start;
     // of what is flat floating point cannot tell: the start is counted exactly
     const wrong = known.outcome.notPositive.length;
     this.#last = { result: positions, primary: positions, report: { ...numbersOf(solver.start), inverted: wrong, smallest: known.outcome.smallestMeasure }, folded: wrong };
-    const first = this.#part('start', { trial: positions, inverted: [wrong, wrong, wrong], report: this.#last.report });
+    const first = this.#part('start', { trial: positions, inverted: [wrong, wrong, wrong], report: this.#last.report, ...(made.groups && { meeting: known.outcome.intersections }) });
     this.records = [first.record];
+    this.#shownResult = positions;
     if (solver.start.status !== 'running') this.result = known;
     return first;
   }
@@ -137,25 +156,57 @@ export class UntangleSession {
     const solver = this.#solver;
     if (!solver || this.finished) return undefined;
     if (this.#queue.length === 0) {
+      await this.#sending?.catch(() => {}); // whoever sent it hears of that
+      this.#moved = false;
       const step = await solver.step();
       if (solver !== this.#solver) return undefined;
+      step.iteration = ++this.#count; // the solver's own count begins anew when what is held moves
       if (step.status !== 'running') {
         const result = await solver.result();
         if (solver !== this.#solver) return undefined;
-        this.result = result;
+        if (!this.#moved) this.result = result;
       }
       this.#reports.push(numbersOf(step));
       this.#queue = this.#partsOf(step);
     }
     const part = this.#queue.shift();
     this.records.push(part.record);
+    this.#shownResult = part.result;
     return part;
+  }
+
+  /** Has what is held go elsewhere: one message at a time; while one is on its way only the newest waits. */
+  async aim(targets) {
+    this.#targets = targets;
+    this.#sending ??= this.#send();
+    await this.#sending;
+  }
+
+  async #send() {
+    try {
+      while (this.#targets) {
+        const [targets, solver] = [this.#targets, this.#solver];
+        try {
+          await solver.movePins(targets);
+        } catch (error) {
+          if (solver === this.#solver) {
+            this.#targets = undefined;
+            throw error;
+          }
+        }
+        if (solver !== this.#solver) continue; // another problem has come
+        if (targets === this.#targets) this.#targets = undefined;
+        [this.#moved, this.result] = [true, undefined];
+      }
+    } finally {
+      this.#sending = undefined;
+    }
   }
 
   /** The parts of a step. What is handed out changes with the last of them. */
   #partsOf(step) {
     const { result, primary, report: before, folded = invertedOf(this.#body, primary) } = this.#last;
-    const { gini, trace } = step;
+    const { gini, trace, quadratic } = step;
     const report = numbersOf(step);
     // Seconds of solving: the solver's own clock also runs while it waits for the next step.
     report.seconds = before.seconds + step.phases.reduce((sum, phase) => sum + phase.milliseconds, 0) / 1000;
@@ -168,15 +219,20 @@ export class UntangleSession {
     const common = { gini: meanwhile, of, report: now };
     const parts = [
       this.#part('local', { ...common, trial: primary, inverted: [folded, before.inverted, folded] }),
+      // the last state of the quadratic problem is the first of the polisher
+      ...quadratic.slice(0, -1).map((state, k) => this.#part('quadratic', {
+        ...common, ...wrongIn(state), k, of: gini.qpIterations, trial: state.positions,
+        inverted: [state.inverted, before.inverted, state.inverted], primary: state.positions,
+      })),
       ...trace.map((state, k) => this.#part(k === 0 ? 'quadratic' : 'polish', {
-        ...common, k, trial: state.positions, zones: state.zones, violated: state.violated,
-        inverted: [state.inverted, before.inverted, polished.inverted], primary: polished.positions,
+        ...common, ...wrongIn(state), ...(k === 0 ? { k: gini.qpIterations, of: gini.qpIterations } : { k }),
+        trial: state.positions, zones: state.zones, inverted: [state.inverted, before.inverted, polished.inverted], primary: polished.positions,
       })),
     ];
     const last = trace.at(-1);
     this.#last = { result: step.positions, primary: step.primary, report };
     parts.push(this.#part('outcome', {
-      ...common, gini, k: of, report, trial: last.positions, zones: gini.accepted ? undefined : last.zones, violated: last.violated,
+      ...common, gini, k: of, report, trial: last.positions, zones: gini.accepted ? undefined : last.zones, ...wrongIn(last),
       inverted: [last.inverted, report.inverted, polished.inverted], primary: polished.positions, result: step.positions,
     }));
     // until then what is handed out is what it was
@@ -184,10 +240,15 @@ export class UntangleSession {
     return parts;
   }
 
-  #part(kind, { trial, result = this.#last.result, primary = this.#last.primary, zones, report, gini, k = 0, of = 0, inverted, violated }) {
-    const count = zones?.reduce((most, zone) => Math.max(most, zone), 0) ?? 0;
-    const record = { ...report, part: kind, k, of, counts: inverted, inverted: inverted[0], violated, zones: count, gini };
-    return { record, status: record.status, iteration: record.iteration, trial, zones, result, primary };
+  #part(kind, { trial, result = this.#last.result, primary = this.#last.primary, zones, report, gini, k = 0, of = 0, inverted, violated, meeting, contacts }) {
+    const most = (list) => list?.reduce((highest, zone) => Math.max(highest, zone), 0) ?? 0;
+    const count = Math.max(most(zones), most(contacts?.zones)); // a zone may be of contacts alone
+    const touching = contacts && { all: contacts.active.length, active: contacts.active.reduce((sum, one) => sum + one, 0) };
+    const record = {
+      ...report, part: kind, k, of, counts: inverted, inverted: inverted[0], violated, zones: count, gini,
+      ...(meeting !== undefined && { meeting, contacts: touching ?? { all: 0, active: 0 } }),
+    };
+    return { record, status: record.status, iteration: record.iteration, trial, zones, result, primary, contacts };
   }
 
   /** A file of what is handed out. */
@@ -209,7 +270,10 @@ export class UntangleSession {
   }
 }
 
+/** What is wrong in a state inside a step. */
+const wrongIn = ({ violated, meeting, contacts }) => ({ violated, meeting, contacts });
+
 /** A step without its arrays. */
-function numbersOf({ positions, primary, trace, ...numbers }) {
+function numbersOf({ positions, primary, trace, quadratic, ...numbers }) {
   return numbers;
 }

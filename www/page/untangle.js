@@ -1,14 +1,17 @@
 // The Untangle mode: a folded body, and the solver that leads it to a map without inverted elements, part by part.
 import { readAddress, writeAddress } from './address.js';
+import { CONTACTS, MOST_ELEMENTS, keepsApart, moved } from './contact-problems.js';
 import { proofOf } from './deform-facts.js';
 import { readUntangleFiles, save } from './files.js';
-import { isFigure } from './figures.js';
+import { Handles } from './handles.js';
 import { Mode } from './mode.js';
 import { describe } from './notice.js';
+import { pick } from './presets.js';
 import { areaOf, relativeTo, volumeOf } from './relative.js';
 import { drawSight } from './sight.js';
 import { UntangleControls } from './untangle-controls.js';
-import { ENERGIES, HELD, STARTS } from './untangle-problems.js';
+import { Movers } from './untangle-hands.js';
+import { ENERGIES, HELD, STARTS, isFlat } from './untangle-problems.js';
 import { UntangleSession } from './untangle-session.js';
 import { ending, number, whole } from './words.js';
 
@@ -19,7 +22,7 @@ const STATES = ['trial', 'result', 'primary'];
 const PARTS = {
   start: () => 'the start',
   local: () => 'local step',
-  quadratic: () => 'quadratic problem',
+  quadratic: ({ k, of }) => (of > 0 ? `QP ${k} of ${of}` : 'quadratic problem'),
   polish: ({ k, of }) => `polisher ${k} of ${of}`,
   outcome: ({ gini }) => (gini.accepted ? 'handed out' : 'not handed out'),
 };
@@ -33,6 +36,8 @@ export class Untangle extends Mode {
   wanted = readAddress('untangle');
   source = { body: this.wanted.body, size: this.wanted.size };
   controls = new UntangleControls(this);
+  hands = new Movers(this);
+  #moves = 1; // of what is held, the first included
   #good = { ...this.wanted };
   #relative = (record) => record; // a record without units
 
@@ -57,11 +62,27 @@ export class Untangle extends Mode {
 
   /** Whether what is on the bench, or will be, is triangles in a plane. */
   get planar() {
-    return this.session?.body ? this.session.planar : isFigure(this.source.body);
+    return this.session?.body ? this.session.planar : isFlat(this.source.body);
+  }
+
+  /** The prepared problem in which bodies are kept apart, if it is one. */
+  get apart() {
+    return !this.source.files && keepsApart(this.source.body) ? CONTACTS[this.source.body] : undefined;
+  }
+
+  /** Whether what is held may be moved. */
+  get mayHold() {
+    return this.session?.keepsApart === true;
+  }
+
+  /** The coordinate axis that keys turn what is held about. */
+  get axis() {
+    return this.planar ? 2 : 0;
   }
 
   invitation() {
     if (this.session.finished) return undefined; // there is nothing to try
+    if (this.apart) return { button: this.apart.button, text: `${this.apart.hint}. Nothing may pass through anything.` };
     const { inverted } = this.records[0];
     const words = this.planar ? 'triangles' : 'tetrahedra';
     const { source } = this;
@@ -107,18 +128,37 @@ export class Untangle extends Mode {
     const { body, planar } = this.session;
     if (planar) this.bench.planar(body);
     else this.bench.solid(body);
+    // zones of contacts are on the outside
+    this.bench.tinted(this.apart !== undefined);
     const measure = planar ? areaOf(body.positions, body.indices) : volumeOf(body.positions, body.tetrahedra);
     this.#relative = relativeTo(1, Math.abs(measure));
+  }
+
+  /** Positions (n×3) that views are to have room for: where what is held goes first, too. */
+  #room(start) {
+    const { groups } = this.session.problem;
+    if (!groups) return start;
+    const points = [start];
+    let { at } = groups[this.apart.moved];
+    for (let count = 2; count < 4; count += 1) {
+      points.push(at);
+      at = moved(this.apart, at, count);
+    }
+    return Float64Array.from(points.flatMap((list) => [...list]));
   }
 
   #begin(first) {
     const { session, wanted } = this;
     const { pins, start } = session.problem;
     this.bench.begin('gini', wanted.start, wanted.energy);
-    this.bench.lookAt(start);
-    this.bench.handles({ groups: pins.length ? [{ vertices: pins }] : [], selected: -1 });
+    this.bench.lookAt(this.#room(start));
+    this.#moves = 1;
+    const handles = new Handles();
+    handles.keepOnly(session.problem.groups?.map((group) => ({ ...group })) ?? (pins.length ? [{ vertices: pins, at: pick(start, pins) }] : []));
+    this.bench.movable(this.mayHold);
     this.#look();
     this.push(first);
+    this.hands.take(handles);
     this.records = session.records;
     this.show(0);
     this.#facts();
@@ -133,29 +173,48 @@ export class Untangle extends Mode {
     const inverted = record.counts[STATES.indexOf(this.wanted.state)];
     const name = PARTS[record.part](record);
     const where = record.part === 'start' ? name : `step ${record.iteration} · ${name}`;
+    const { meeting, contacts } = record;
     const below = `${whole(violated ?? 0)} below η`;
+    const touching = meeting === undefined ? undefined : touchingWords(meeting, contacts);
     const zoned = zones > 0 ? ` in ${whole(zones)} ${zones === 1 ? 'zone' : 'zones'}` : '';
     const { energy } = this.#relative(record);
     return {
-      ...record, inverted, where,
+      ...record, inverted, where, touching,
       energyText: violated === undefined ? `energy ${number(energy)}` : below,
-      spoken: `${where.replace(' · ', ', ')}, ${violated === undefined ? '' : `${below}${zoned}, `}${inverted} inverted`,
+      spoken: `${where.replace(' · ', ', ').replace('QP', 'quadratic problem')}, ${violated === undefined ? '' : `${below}${zoned}, `}${inverted} inverted${touching ? `, ${touching.join(', ')}` : ''}`,
     };
   }
 
   push(part) {
-    this.bench.pushMoment({ ...this.#relative(part.record), trial: part.trial, zoneOf: part.zones, result: part.result, primary: part.primary });
+    this.bench.pushMoment({ ...this.#relative(part.record), trial: part.trial, zoneOf: part.zones, result: part.result, primary: part.primary, contacts: part.contacts });
+  }
+
+  /** While it plays the many iterations of the quadratic problem pass five times as fast. */
+  get beat() {
+    const { part, k, of } = this.records[this.shown] ?? {};
+    return part === 'quadratic' && k < of ? 0.2 : 1;
   }
 
   ended() {
     this.finish();
     const { obstacles, outcome } = this.session.result;
+    if (this.mayHold && this.session.newest.status !== 'converged' && outcome.notPositive.length === 0) {
+      this.#stay();
+      return this.notice('No way was found', 'What is held stays where it got to. Move it elsewhere, or begin anew.', { plain: true });
+    }
     if (this.session.newest.iteration === 0 && outcome.notPositive.length === 0) return this.notice('Nothing to do', 'Nothing is inverted in this start.', { plain: true });
     if (outcome.notPositive.length > 0) return this.notice('Not everything came free', obstacles.join(' '), { plain: true });
   }
 
   finish() {
     this.#facts();
+  }
+
+  /** What is held is to stay where it is. */
+  #stay() {
+    const { positions } = this.session;
+    for (const group of this.hands.handles.groups) group.at = Float64Array.from(pick(positions, group.vertices));
+    this.hands.draw();
   }
 
   #facts() {
@@ -176,6 +235,8 @@ export class Untangle extends Mode {
       const how = newest.status === 'stalled' ? 'no better state found' : ending(newest);
       pairs.push(['ended', newest.iteration === 0 ? 'before the first step' : `${how} after ${newest.iteration} ${newest.iteration === 1 ? 'step' : 'steps'}`]);
       pairs.push(...proofOf(result.certificate, planar));
+      const { globallyInjective } = result.outcome;
+      if (globallyInjective !== undefined && !planar) pairs.push(['', globallyInjective ? 'nothing in anything else (exact)' : 'parts of it lie in each other (exact)']);
     }
     this.bench.facts(pairs);
   }
@@ -220,10 +281,63 @@ export class Untangle extends Mode {
     if (name && (planar || !this.planar)) this.change('energy', name);
   }
 
+  /** What is held goes on: the next of its moves. */
+  async further() {
+    if (!this.whenReady(() => this.further()) || !this.mayHold || !this.apart) return;
+    const { handles } = this.hands;
+    const group = handles.groups[this.apart.moved];
+    this.#moves += 1;
+    group.at = moved(this.apart, group.at, this.#moves);
+    await this.aim();
+    if (!this.session.finished && !this.solving) {
+      this.pause();
+      await this.keepGoing();
+    }
+  }
+
+  /** The solver hears where what is held is to go. */
+  async aim() {
+    this.clearNotice();
+    this.hands.used = true;
+    if (this.active) document.getElementById('invite').hidden = true;
+    this.showNewest();
+    this.hands.drawTargets();
+    try {
+      await this.session.aim(this.hands.handles.targets());
+    } catch (error) {
+      this.notice('It cannot go there', describe(error));
+    }
+  }
+
+  listen(name, value) {
+    this.hands.listen(name, value);
+  }
+
+  showNewest() {
+    if (this.shown < this.records.length - 1) this.show(this.records.length - 1);
+  }
+
+  /** Nothing moves by itself. */
+  endMotion() {}
+
+  /** Goes on at full speed until it rests. */
+  hurry() {
+    if (!this.active) return;
+    this.clearNotice();
+    if (this.playing && !this.solving) this.pause();
+    this.hurried = true;
+    if (!this.playing) this.keepGoing();
+  }
+
+  leave() {
+    void this.hands.drop();
+    super.leave();
+  }
+
   async changeBody(body, size) {
-    const next = { body, size };
+    const next = { body, size: keepsApart(body) ? Math.min(size, MOST_ELEMENTS) : size };
     Object.assign(this.wanted, next);
-    if (isFigure(body) && !ENERGIES[this.wanted.energy].planar) this.wanted.energy = 'arap';
+    if (isFlat(body) && !ENERGIES[this.wanted.energy].planar) this.wanted.energy = 'arap';
     if (!this.whenReady(() => this.open(next))) return;
     await this.open(next, { busy: size > 10_000 ? 'Building the body' : '' });
   }
@@ -263,7 +377,8 @@ export class Untangle extends Mode {
 
   /** What a link does not carry. */
   get notShared() {
-    return this.source.files ? 'It has the solver and its settings; the files stay with you.' : '';
+    if (this.source.files) return 'It has the solver and its settings; the files stay with you.';
+    return this.hands.used ? 'It has the problem; where you have moved what is held stays with you.' : '';
   }
 
   get exports() {
@@ -279,6 +394,12 @@ export class Untangle extends Mode {
   connect() {
     this.controls.connect();
   }
+}
+
+/** What crosses and what is in contact, in words. */
+function touchingWords(meeting, { all, active }) {
+  const pairs = meeting === 1 ? '1 pair crosses' : `${whole(meeting)} pairs cross`;
+  return [pairs, `${whole(all)} ${all === 1 ? 'contact' : 'contacts'}, ${whole(active)} active`];
 }
 
 /** What is held otherwise than a person's file has it. */

@@ -1,5 +1,7 @@
 //! What happened: the iterates of the run on the bench and the curves of the runs before it.
 
+use crate::solid::contact::Contact;
+
 /// What an iteration spent its time on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase {
@@ -63,6 +65,8 @@ pub struct Record {
     pub lim: Option<LimStep>,
     /// Of an untangling: which part of which step this is, and what is wrong then.
     pub moment: Option<Moment>,
+    /// Of an untangling whose boundary must not pass through itself: its contacts then.
+    pub contacts: Vec<Contact>,
     /// The phases of the iteration that led here.
     pub phases: Vec<Phase>,
 }
@@ -90,7 +94,7 @@ pub struct LimStep {
 pub struct Moment {
     /// Which part.
     pub part: Part,
-    /// Of the polisher: which iteration; and how many the step has.
+    /// Which iteration of the quadratic problem or the polisher; and how many the polisher has in this step.
     pub polish: [u32; 2],
     /// Inverted elements.
     pub inverted: [u32; 3],
@@ -110,6 +114,9 @@ pub struct Moment {
     pub reduced: u32,
     /// The smallest measure of an element of the state that is handed out, relative to that at rest.
     pub smallest: f64,
+    /// Where the boundary must not pass through itself: pairs of facets that do, of what the step works on, where they
+    /// are counted.
+    pub meeting: Option<u32>,
 }
 
 /// The parts of a step of an untangling, in their order.
@@ -146,7 +153,7 @@ impl Record {
     /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields (−1 for a switch that
     /// has not been), and three (kind, count, milliseconds) for every phase. `None` if the first is too short.
     ///
-    /// Behind them may stand the seven of a [`LimStep`], or the sixteen of a [`Moment`].
+    /// Behind them may stand the seven of a [`LimStep`], or the seventeen of a [`Moment`].
     pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
         let (numbers, own) = numbers.split_at_checked(RECORD_WIDTH)?;
         let moment = Moment::from_numbers(own);
@@ -189,6 +196,7 @@ impl Record {
             switched_at: (switched_at >= 0.0).then_some(switched_at as u32),
             lim,
             moment,
+            contacts: Vec::new(),
             phases: phases
                 .as_chunks::<3>()
                 .0
@@ -202,9 +210,11 @@ impl Record {
         })
     }
 
-    /// max(σ₁, 1/σ of the last) over the elements; infinite while one is inverted or collapsed.
+    /// max(σ₁, 1/σ of the last) over the elements; infinite while one is inverted or collapsed. Of an untangling that of the
+    /// state that is handed out.
     pub fn worst_distortion(&self) -> f64 {
-        if self.smallest_sigma > 0.0 && self.inverted == 0 {
+        let inverted = self.moment.map_or(self.inverted, |m| m.inverted[1]);
+        if self.smallest_sigma > 0.0 && inverted == 0 {
             self.largest_sigma.max(1.0 / self.smallest_sigma)
         } else {
             f64::INFINITY
@@ -213,9 +223,9 @@ impl Record {
 }
 
 impl Moment {
-    /// From the numbers of the page: part, iteration of the polisher and of how many, three counts of inverted
+    /// From the numbers of the page: part, iteration, how many the polisher has, three counts of inverted
     /// elements, violated constraints (−1: not counted), zones, iterations of the quadratic problem, its constraints and active ones,
-    /// accepted or not, least and first η, how many are reduced, smallest measure.
+    /// accepted or not, least and first η, how many are reduced, smallest measure, pairs that meet (−1: not counted).
     fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let &[
             part,
@@ -234,6 +244,7 @@ impl Moment {
             first,
             reduced,
             smallest,
+            meeting,
         ] = numbers
         else {
             return None;
@@ -250,6 +261,7 @@ impl Moment {
             offset: [least, first],
             reduced: reduced as u32,
             smallest,
+            meeting: (meeting >= 0.0).then_some(meeting as u32),
         })
     }
 }
@@ -383,9 +395,10 @@ mod tests {
         lim[10..].copy_from_slice(&[1e8, 0.1, 0.5, 0.25, 0.02, 3.0, 4.0]);
         let step = Record::from_numbers(&lim, &[]).and_then(|r| r.lim).unwrap();
         assert_eq!((step.alpha, step.arrived), (1e8, [3, 4]));
-        let mut moment = [0.0; 26];
+        let mut moment = [0.0; 27];
         moment[10..].copy_from_slice(&[
             3.0, 2.0, 5.0, 7.0, 9.0, 8.0, 20.0, 4.0, 50.0, 30.0, 12.0, 1.0, 0.01, 0.1, 6.0, -0.5,
+            11.0,
         ]);
         let record = Record::from_numbers(&moment, &[]).unwrap();
         assert_eq!(record.lim, None);
@@ -398,6 +411,16 @@ mod tests {
             (m.constraints, m.offset, m.accepted),
             ([30, 12], [0.01, 0.1], true)
         );
+        assert_eq!((m.violated, m.meeting), (Some(20), Some(11)));
+        // it is x whose stretch is told, whatever is wrong in what is worked on
+        let mut record = record.clone();
+        (record.smallest_sigma, record.largest_sigma, record.inverted) = (0.5, 1.5, 7);
+        assert_eq!(record.worst_distortion(), f64::INFINITY);
+        record.moment = record.moment.map(|m| Moment {
+            inverted: [7, 0, 8],
+            ..m
+        });
+        assert_eq!(record.worst_distortion(), 2.0);
     }
 
     #[test]

@@ -367,7 +367,10 @@ pub fn moment_name(moment: &Moment) -> String {
     match moment.part {
         Part::Start => "start".into(),
         Part::Local => "local step".into(),
-        Part::Quadratic => "quadratic problem".into(),
+        Part::Quadratic => format!(
+            "quadratic problem, iteration {} of {}",
+            moment.polish[0], moment.solves
+        ),
         Part::Polish => format!("polisher {} of {}", moment.polish[0], moment.polish[1]),
         Part::Outcome if moment.accepted => "handed out".into(),
         Part::Outcome => "not handed out".into(),

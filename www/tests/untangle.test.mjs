@@ -112,8 +112,9 @@ describe('the session', () => {
     }
     const parts = session.records.slice(1).map(({ iteration, part, k }) => [iteration, part, k].join());
     const expected = [...Array(session.newest.iteration).keys()].flatMap((i) => {
-      const { of } = session.records.find((record) => record.iteration === i + 1);
-      return [`${i + 1},local,0`, `${i + 1},quadratic,0`, ...Array.from({ length: of }, (_, k) => `${i + 1},polish,${k + 1}`), `${i + 1},outcome,${of}`];
+      const { of } = session.records.find((record) => record.iteration === i + 1 && record.part === 'outcome');
+      const quadratic = session.records.find((record) => record.iteration === i + 1 && record.part === 'quadratic').gini.qpIterations;
+      return [`${i + 1},local,0`, ...Array.from({ length: quadratic + 1 }, (_, k) => `${i + 1},quadratic,${k}`), ...Array.from({ length: of }, (_, k) => `${i + 1},polish,${k + 1}`), `${i + 1},outcome,${of}`];
     });
     assert.deepEqual(parts, expected);
     assert.equal(session.newest.counts[1], 0);
@@ -155,7 +156,7 @@ describe('the page', () => {
     assert.ok(first > 200);
     assert.equal(await drawn(page), first);
     // one part after the other
-    for (const [key, words] of [['ArrowRight', /step 1 · local step/], ['ArrowRight', /step 1 · quadratic problem · \d+ below η/], ['ArrowRight', /step 1 · polisher 1 of \d+/]]) {
+    for (const [key, words] of [['ArrowRight', /step 1 · local step/], ['ArrowRight', /step 1 · QP 0 of \d+ · \d+ below η/], ['ArrowRight', /step 1 · QP 1 of \d+/]]) {
       const { length } = await records(page);
       await page.keyboard.press(key);
       await shownIs(page, length);

@@ -12,6 +12,7 @@ use crate::distortion::RestShapes;
 use crate::history::{Frames, Moment, Record, Run};
 use crate::layout::View;
 use crate::outline;
+use crate::solid::contact::Contact;
 use crate::words::{Nouns, PLANAR, SOLID, SURFACE};
 
 /// Memory for the iterates of one run.
@@ -330,6 +331,11 @@ impl Bench {
             State::Primary if !others[1].is_empty() => &others[1],
             _ => &self.frames,
         }
+    }
+
+    /// The contacts of the moment on show.
+    pub fn contacts(&self) -> &[Contact] {
+        self.record().map_or(&[], |record| &record.contacts)
     }
 
     /// What is known of the moment on show, of an untangling.

@@ -12,6 +12,7 @@ use super::race::Race;
 use super::solid::{Body, Cut};
 use super::stage::{Mode, Stage};
 use crate::history::Record;
+use crate::solid::contact::Contact;
 use crate::solid::field::Field;
 
 /// The bench of a mode. All arrays are copied.
@@ -174,9 +175,10 @@ impl BenchHandle {
         }
     }
 
-    /// Adds a moment of an untangling: numbers as for `pushFrame`, with the sixteen of a moment behind the first ten; what
+    /// Adds a moment of an untangling: numbers as for `pushFrame`, with the seventeen of a moment behind the first ten; what
     /// the step works on (n×3) and the zone of every element (m, or nothing); the state that is handed out and the
-    /// primary solver's (n×3 each).
+    /// primary solver's (n×3 each); its contacts, seven numbers each: vertices, two edges or not,
+    /// active or not, zone.
     #[wasm_bindgen(js_name = pushMoment)]
     pub fn push_moment(
         &self,
@@ -186,8 +188,10 @@ impl BenchHandle {
         zones: &[f32],
         result: Vec<f32>,
         primary: Vec<f32>,
+        contacts: &[u32],
     ) {
-        if let Some(record) = Record::from_numbers(numbers, phases) {
+        if let Some(mut record) = Record::from_numbers(numbers, phases) {
+            record.contacts = Contact::from_numbers(contacts, primary.len() / 3);
             let trial = [trial, zones].concat();
             self.change(|bench| bench.push_moment(record, trial, [result, primary]));
         }
@@ -255,6 +259,18 @@ impl BenchHandle {
                 );
             }
         });
+    }
+
+    /// Whether what is held of a body that is untangled may be dragged elsewhere.
+    #[wasm_bindgen(js_name = setMovable)]
+    pub fn set_movable(&self, on: bool) {
+        self.body(|body| body.movable = on);
+    }
+
+    /// Contacts of the moment on show as drawn in the view of the skin: those of vertices and facets, and of edges.
+    #[wasm_bindgen(getter, js_name = drawnContacts)]
+    pub fn drawn_contacts(&self) -> Vec<usize> {
+        self.body(|body| body.drawn_contacts.to_vec())
     }
 
     /// Which handle keys act on; a negative number for none.

@@ -1,6 +1,7 @@
 //! A solid of tetrahedra as the page draws it: its skin, its creases, how each tetrahedron is
 //! stretched, how a plane cuts it, and what lies under the pointer.
 
+pub mod contact;
 pub mod field;
 pub mod pick;
 pub mod slice;

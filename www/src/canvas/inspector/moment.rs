@@ -6,6 +6,7 @@ use super::Column;
 use crate::canvas::style;
 use crate::history::{Moment, Part, PhaseKind, Record};
 use crate::scale::{number, whole};
+use crate::solid::contact::Contact;
 use crate::words::{citation, explain, method_name};
 
 /// A line about a part of the step.
@@ -45,6 +46,9 @@ impl Column<'_> {
             let words = explain("gini", kind);
             let [at, of] = moment.polish;
             let count = match part {
+                Part::Quadratic if moment.part == Part::Quadratic => {
+                    format!("{at} of {}", moment.solves)
+                }
                 Part::Quadratic => format!("{} iterations", moment.solves),
                 Part::Polish if moment.part == Part::Polish => format!("{at} of {of}"),
                 Part::Polish => format!("{of} iterations"),
@@ -170,13 +174,18 @@ impl Column<'_> {
         self.pair("handed out", &result, &format!("Inverted {elements} of x, the state that is handed out: it moves only when none of them gets worse."));
         self.pair("primary solver", &primary, &format!("Inverted {elements} of the primary solver’s state, x with a bar in the paper: it may fold, and may unwind what polishing alone cannot."));
         let violated = moment.violated.map(|n| whole(n as usize));
-        let zones = match (violated, moment.zones) {
-            (None, _) => "not looked at".into(),
-            (Some(violated), 0) => violated,
-            (Some(violated), 1) => format!("{violated} in 1 zone"),
-            (Some(violated), zones) => format!("{violated} in {} zones", whole(zones as usize)),
+        let violated = violated.unwrap_or_else(|| "not looked at".into());
+        self.pair(
+            "below η",
+            &violated,
+            &format!("{elements} with less measure than η, also those that are not inverted."),
+        );
+        let zones = match (moment.part, moment.zones) {
+            (Part::Polish | Part::Outcome, zones) | (_, zones @ 1..) => whole(zones as usize),
+            _ => "–".into(),
         };
-        self.pair("below η", &zones, &format!("{elements} with less measure than η, also those that are not inverted; constraints that share vertices are one zone, and zones are polished apart."));
+        self.pair("zones", &zones, "Violated constraints that share vertices are one zone, and zones are polished apart; the colours tell them apart.");
+        self.contacts(moment);
         let [all, active] = moment.constraints.map(|n| whole(n as usize));
         self.pair(
             "constraints, active",
@@ -199,5 +208,35 @@ impl Column<'_> {
             &number(moment.smallest, 3),
             "Of an element of what is handed out, relative to rest; below 0 inverted.",
         );
+    }
+
+    /// What must not pass through each other.
+    fn contacts(&mut self, moment: &Moment) {
+        let Some(meeting) = moment.meeting else {
+            return;
+        };
+        self.pair(
+            "pairs that cross",
+            &whole(meeting as usize),
+            "Facets of the boundary that meet where they should not, in what this step works on; exactly. In what is handed out none ever do.",
+        );
+        let (edges, corners): (Vec<&Contact>, Vec<&Contact>) =
+            self.bench.contacts().iter().partition(|c| c.edges);
+        for (name, list, hint) in [
+            (
+                "contacts ◆, active",
+                corners,
+                "Constraints between a vertex and a facet of the boundary: the vertex has to stay outside of it.",
+            ),
+            (
+                "contacts ✕, active",
+                edges,
+                "Constraints between two edges of the boundary: the tetrahedron of air between them must not turn over.",
+            ),
+        ] {
+            let active = list.iter().filter(|c| c.active).count();
+            let words = format!("{}, {}", whole(list.len()), whole(active));
+            self.pair(name, &words, &format!("{hint} Active ones hold the two apart now; the others did before, and stay ready."));
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! What is wrong with an untangled body, part by part of its steps: constraints that are violated, elements that are
-//! inverted (figure 1 of Overby et al. 2021, at its right).
+//! inverted, facets of the boundary that cross (figure 1 of Overby et al. 2021, at its right).
 
 use eframe::egui::{self, Align2, Color32, Pos2, Rect, Sense, Shape, Stroke, pos2, vec2};
 
 use super::names;
 use crate::canvas::bench::{Bench, Event};
 use crate::canvas::style;
-use crate::colour::curve_style;
+use crate::colour::{Rgb, curve_style};
 use crate::history::{Moment, Part, Record};
 use crate::scale::{LogAxis, power_of_ten, whole};
 use crate::words::moment_name;
@@ -49,10 +49,11 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     let painter = ui.painter().clone();
     let (theme, text) = (bench.theme, bench.text);
     let heading = style::heading(&painter, bench, rect, rect.right(), "Violations", "");
-    let words = format!(
-        "{}, log scale, by the parts of the steps",
-        bench.nouns().elements
-    );
+    let words = match bench.moment().and_then(|m| m.meeting) {
+        Some(_) => format!("{} and pairs, log scale", bench.nouns().elements),
+        None => format!("{}, log scale", bench.nouns().elements),
+    };
+    let words = format!("{words}, by iterations of the quadratic problem (QP) and the polisher");
     let at = pos2(heading.right() + 12.0, heading.center().y);
     style::label(&painter, bench, at, Align2::LEFT_CENTER, &words, true);
     let area = Rect::from_min_max(
@@ -70,6 +71,13 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             value: |m| m.violated,
             ink: style::colour(theme.quiet),
             width: 1.2,
+            dashed: true,
+        },
+        Curve {
+            name: "pairs that cross",
+            value: |m| m.meeting,
+            ink: style::colour(crossing(theme.dark)),
+            width: 1.6,
             dashed: true,
         },
         Curve {
@@ -97,6 +105,7 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     };
     axes(&painter, &place, bench);
     steps(&painter, &place, bench);
+    polisher(&painter, &place, bench);
     let mut ends: Vec<(f32, &str, Color32)> = Vec::new();
     for curve in &curves {
         let points: Vec<Pos2> = records
@@ -117,6 +126,15 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     }
     names::beside(&painter, area.right(), area.bottom(), &mut ends, text);
     answer(ui, rect, &place, bench);
+}
+
+/// The colour of pairs that cross: that of no solver and of no zone.
+fn crossing(dark: bool) -> Rgb {
+    if dark {
+        [200, 150, 240]
+    } else {
+        [110, 50, 160]
+    }
 }
 
 fn draw(painter: &egui::Painter, place: &Place, curve: &Curve, points: Vec<Pos2>) {
@@ -181,6 +199,49 @@ fn steps(painter: &egui::Painter, place: &Place, bench: &Bench) {
     }
 }
 
+/// A line where the polisher begins, after the last iteration of the quadratic problem; with names where there is room.
+fn polisher(painter: &egui::Painter, place: &Place, bench: &Bench) {
+    let (theme, text, area) = (bench.theme, bench.text, place.area);
+    let stroke = Stroke::new(1.2, style::colour(theme.ink).gamma_multiply(0.75));
+    let records = &bench.run.records;
+    let part = |i: usize| records.get(i).and_then(|r| r.moment).map(|m| m.part);
+    let mut begun = 0;
+    let mut free = f32::NEG_INFINITY;
+    for i in 0..records.len() {
+        if part(i) == Some(Part::Local) {
+            begun = i;
+        }
+        if part(i) != Some(Part::Quadratic) || part(i + 1) == Some(Part::Quadratic) {
+            continue;
+        }
+        // of the newest step it is known where its quadratic problem ends
+        if records[i].moment.is_some_and(|m| m.polish[0] < m.solves) {
+            continue;
+        }
+        let (from, x) = (place.x(begun), place.x(i));
+        if x - from < 5.0 && x < free {
+            continue;
+        }
+        painter.line_segment([pos2(x, area.top()), pos2(x, area.bottom())], stroke);
+        let name = |at: Pos2, anchor: Align2, name: &str| {
+            let font = style::regular(style::SMALL * text);
+            let quiet = style::colour(theme.quiet);
+            let galley = painter.layout_no_wrap(name.into(), font, quiet);
+            let room = anchor.anchor_size(at, galley.size());
+            painter.rect_filled(room.expand(1.0), 2.0, style::colour(theme.ground));
+            painter.galley(room.min, galley, quiet);
+            room
+        };
+        let y = area.top() + 1.0;
+        if x - from > 34.0 * text && from + 6.0 > free {
+            name(pos2(x - 4.0, y), Align2::RIGHT_TOP, "QP");
+        }
+        if x + 4.0 > free {
+            free = name(pos2(x + 4.0, y), Align2::LEFT_TOP, "polisher").right() + 4.0;
+        }
+    }
+}
+
 fn answer(ui: &mut egui::Ui, rect: Rect, place: &Place, bench: &mut Bench) {
     let area = place.area;
     let body = Rect::from_min_max(pos2(rect.left(), area.top() - 12.0), rect.max);
@@ -228,8 +289,11 @@ fn describe(record: &Record) -> Option<String> {
         let (violated, zones) = (whole(violated as usize), whole(m.zones as usize));
         format!("\n{violated} below η, zones: {zones}")
     });
+    let crossing = m.meeting.map_or(String::new(), |pairs| {
+        format!("\n{} pairs cross", whole(pairs as usize))
+    });
     Some(format!(
-        "step {}, {}\n{} inverted{below}\n{} inverted in what is handed out",
+        "step {}, {}\n{} inverted{below}{crossing}\n{} inverted in what is handed out",
         record.iteration,
         moment_name(&m),
         whole(m.inverted[0] as usize),

@@ -3,13 +3,17 @@
 use eframe::egui::{self, Align2, Pos2, Rect, Sense, pos2};
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
-use super::Body;
+use super::{Body, contacts};
 use crate::canvas::bench::Bench;
 use crate::canvas::{gpu, legend, style};
 use crate::scale::{number, whole};
+use crate::solid::field::Field;
 use crate::solid::pick::{Lens, triangle_at};
 use crate::solid::slice::Plane;
 use crate::solid::stretch::corners;
+
+/// How near the plane a contact must be to be drawn, in radii of the solid.
+const NEAR: f32 = 0.04;
 
 /// Draws the view and answers the pointer.
 pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
@@ -50,6 +54,13 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
         && let Some(t) = under(&body, &lens, plane, frame, local(p))
     {
         response.on_hover_text_at_pointer(describe(&body, t, frame));
+    }
+    if let (Some(plane), Some(frame)) = (plane, bench.map()) {
+        let near = NEAR * bench.orbit.radius;
+        let shown = (body.positions(frame), body.field == Field::Zone);
+        contacts::draw(ui.painter(), rect, &lens, bench, shown, |p| {
+            plane.height(p).abs() < near
+        });
     }
     legend::ramp(ui.painter(), rect, bench, &body.legend());
     let reported = if bench.shown_map == bench.shown {

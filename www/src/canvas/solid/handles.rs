@@ -83,7 +83,7 @@ pub fn draw(
             painter.rect_filled(square, 0.0, accent);
         }
         let centre = place(middle(handle, positions));
-        if !few && !bench.is_untangling() {
+        if !few && (!bench.is_untangling() || body.movable) {
             let square = Rect::from_center_size(centre, vec2(13.0, 13.0));
             painter.rect_filled(square.expand(2.0), 0.0, ground);
             painter.rect_filled(square, 0.0, accent);
@@ -114,7 +114,7 @@ pub fn draw(
 pub fn all_is_held(bench: &Bench, body: &Body) -> bool {
     let held = body.handles.iter().flatten();
     let outside = held.filter(|v| body.solid.outside.binary_search(v).is_ok());
-    bench.is_untangling() && outside.count() == body.solid.outside.len()
+    bench.is_untangling() && !body.movable && outside.count() == body.solid.outside.len()
 }
 
 /// One mark for a handle of many vertices, one a vertex elsewhere.

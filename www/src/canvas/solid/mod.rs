@@ -1,5 +1,6 @@
 //! A solid on the bench: what is held, dragged and cut, and how the iterate on show is drawn.
 
+mod contacts;
 mod cut;
 mod handles;
 mod parameters;
@@ -71,6 +72,10 @@ pub struct Body {
     pub sub_targets: Vec<(u32, Vec3)>,
     /// Whether what comes with the positions are zones, not stresses.
     pub zones: bool,
+    /// Whether what is held may be dragged while it is untangled.
+    pub movable: bool,
+    /// Contacts drawn last: of vertices and facets, of edges.
+    pub drawn_contacts: [usize; 2],
     /// The drag under way.
     pub grab: Option<Grab>,
     /// Vertex under the pointer.

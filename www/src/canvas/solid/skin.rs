@@ -3,10 +3,11 @@
 use eframe::egui::{self, Align2, CursorIcon, PointerButton, Pos2, Rect, Response, Sense, pos2};
 use glam::{Vec2, Vec3};
 
-use super::{Body, Grab, handles};
+use super::{Body, Grab, contacts, handles};
 use crate::canvas::bench::{Bench, Event};
 use crate::canvas::{gpu, legend, style};
 use crate::scale::whole;
+use crate::solid::field::Field;
 use crate::solid::pick::{Lens, vertex_at, vertices_in};
 
 /// How far beside the solid a pointer may be and still mean a vertex, in points.
@@ -52,7 +53,10 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
             &body,
             body.positions(frame),
         );
+        let shown = (body.positions(frame), body.field == Field::Zone);
+        body.drawn_contacts = contacts::draw(ui.painter(), rect, &lens, bench, shown, |_| true);
     }
+    contacts::key(ui.painter(), rect, bench);
     handles::rubber(ui.painter(), ui, bench, &body);
     if bench.tinted || planar {
         legend::ramp(ui.painter(), rect, bench, &body.legend());
@@ -77,6 +81,8 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
 fn hint(bench: &Bench, body: &Body) -> &'static str {
     if handles::all_is_held(bench, body) {
         "all of the outside is held; drag to turn"
+    } else if bench.is_untangling() && body.movable {
+        "drag a square to move what it holds; drag beside it to turn"
     } else if bench.is_untangling() {
         "drag to turn"
     } else if body.handles.is_empty() {
@@ -179,7 +185,8 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
         }
         body.grab = None;
     }
-    let free = body.grab.is_none() && !shift && !body.box_tool && !bench.is_untangling();
+    let untangling = bench.is_untangling();
+    let free = body.grab.is_none() && !shift && !body.box_tool && (!untangling || body.movable);
     body.over = None;
     if let (Some(p), Some(frame)) = (response.hover_pos().filter(|_| free), bench.map()) {
         let positions = body.positions(frame);
@@ -202,6 +209,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
                     bench.events.push(Event::Select(Some(i)));
                 }
             }
+            None if untangling => {}
             None => {
                 body.over = vertex();
                 if response.clicked() {
@@ -234,11 +242,12 @@ fn begin(
     origin: Option<Pos2>,
     local: impl Fn(Pos2) -> Vec2,
 ) -> Grab {
-    // What is held while a body is untangled stays where it is.
-    let (Some(origin), true) = (origin, by_main && !bench.is_untangling()) else {
+    // What is held while a body is untangled stays where it is, unless it is kept from passing through itself.
+    let untangling = bench.is_untangling();
+    let (Some(origin), true) = (origin, by_main && (!untangling || body.movable)) else {
         return Grab::Camera;
     };
-    if shift || body.box_tool {
+    if !untangling && (shift || body.box_tool) {
         return Grab::Box(origin);
     }
     let Some(frame) = bench.map() else {
@@ -249,6 +258,9 @@ fn begin(
     if let Some((handle, anchor)) = handles::under(body, lens, positions, from) {
         bench.events.push(Event::GrabHandle(handle));
         return Grab::Vertices(anchor, from);
+    }
+    if untangling {
+        return Grab::Camera;
     }
     let solid = &body.solid;
     if let Some(v) = vertex_at(lens, &solid.skin, &solid.outside, positions, from, BESIDE) {

@@ -1,0 +1,263 @@
+// The Untangle mode's bodies that are kept apart, and what its steps go through, on the built page.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { after, before, describe, test } from 'node:test';
+import { initSync } from '../../pkg/core.js';
+import { CONTACTS, MOST_ELEMENTS, handlesOf, moved } from '../page/contact-problems.js';
+import { pick } from '../page/presets.js';
+import { apartOf, generate, invertedOf } from '../page/untangle-problems.js';
+import { UntangleSession } from '../page/untangle-session.js';
+import { audit, launch, onPageOf, openPage } from './harness.mjs';
+
+let site;
+before(async () => { site = await launch(); });
+after(() => site?.close());
+const onPage = onPageOf(() => site);
+
+const core = initSync(readFileSync(new URL('../../pkg/single/foldfree_bg.wasm', import.meta.url)));
+/** The library without a worker, as the session uses it. */
+const library = {
+  version: core.version, threads: 1,
+  generateSolid: async (...args) => core.generateSolid(...args),
+  mesh: async (...args) => core.mesh(...args),
+  solid: async (...args) => core.solid(...args),
+  untangle: async (body, options) => core.untangle(body, options),
+};
+const WIDE = { width: 1300, height: 820 };
+const HOOKS = '?mode=untangle&body=hooks&size=3000';
+const FLAT = '?mode=untangle&body=flat-hooks&size=1000';
+const CUSHION = '?mode=untangle&body=cushion&size=1000';
+
+const statusText = async (page) => {
+  await page.evaluate(() => new Promise((resolve) => { requestAnimationFrame(() => requestAnimationFrame(resolve)); }));
+  return (await page.textContent('#status')).replaceAll('\u00a0', '');
+};
+const records = (page) => page.evaluate(() => globalThis.foldfreePage.session.records);
+const shownIs = (page, index) => page.waitForFunction((k) => globalThis.foldfreePage.shown === k, index);
+const atRest = async (page) => {
+  await page.waitForFunction(() => globalThis.foldfreePage.session.finished, null, { timeout: 120_000 });
+  await page.waitForSelector('#play:not(.playing)');
+};
+const toTheEnd = async (page) => {
+  await page.selectOption('#pace', '0');
+  await page.click('#unfold');
+  await atRest(page);
+};
+const outcome = (page) => page.evaluate(() => globalThis.foldfreePage.session.result.outcome);
+
+describe('bodies that are kept apart', () => {
+  test('are small, start free, and come to rest after every move', () => {
+    for (const [name, problem] of Object.entries(CONTACTS)) {
+      for (const size of [1000, 30_000]) {
+        const body = generate(core, { body: name, size });
+        const elements = body.indices ? body.indices.length / 3 : body.tetrahedra.length / 4;
+        assert.ok(elements > 500 && elements < 1.15 * MOST_ELEMENTS, `${name}: ${elements}`);
+        assert.equal(problem.planar === true, body.indices !== undefined);
+        const { pins, start, groups, targets } = apartOf(body, name);
+        assert.deepEqual([...start], [...body.positions]);
+        assert.equal(invertedOf(body, start), 0);
+        assert.equal(new Set(pins).size, pins.length, 'no vertex is held twice');
+        assert.ok(groups.every(({ vertices, at }) => vertices.length > 0 && at.length === 3 * vertices.length));
+        const solver = core.untangle(body, { pins, overlap: true, settle: 0 });
+        assert.equal(solver.start.status, 'converged', `${name} starts free`);
+        if (size > 1000) continue;
+        let [points, most] = [pick(body.positions, groups[problem.moved].vertices), 0];
+        for (const count of [1, 2]) {
+          points = moved(problem, points, count);
+          solver.movePins({ vertices: groups[problem.moved].vertices, positions: Float64Array.from(points) });
+          for (const step of solver) most = Math.max(most, step.gini.contacts);
+          const { outcome: end } = solver.result();
+          assert.deepEqual([end.globallyInjective, end.intersections], [true, 0], `${name}, move ${count}`);
+        }
+        assert.ok(most > 0, `${name}: nothing was in the way`);
+        assert.equal(targets.vertices.length, pins.length);
+        solver.free();
+      }
+    }
+    const arrays = CONTACTS.cushion.make(1000);
+    const [walls] = handlesOf(CONTACTS.cushion, arrays);
+    assert.equal(walls.length, 64, 'the walls are held, the cushion is not');
+  });
+});
+
+describe('the session', () => {
+  test('shows every iteration of the quadratic problem and the polisher, and goes on when what is held moves', async () => {
+    const session = new UntangleSession(library);
+    const first = await session.open({ source: { body: 'hooks', size: 3000 }, held: 'twisted', start: 'random', energy: 'arap' });
+    assert.ok(session.keepsApart && !session.finished);
+    assert.deepEqual([first.record.meeting, first.record.contacts, first.record.counts], [0, { all: 0, active: 0 }, [0, 0, 0]]);
+    const { groups, targets } = session.problem;
+    let steps = 0;
+    for (const count of [1, 2]) {
+      if (count > 1) {
+        const [held, pulled] = groups;
+        const at = moved(CONTACTS.hooks, pulled.at, count);
+        await session.aim({ vertices: targets.vertices, positions: Float64Array.of(...held.at, ...at) });
+        assert.ok(!session.finished && session.result === undefined);
+      }
+      while (!session.finished) {
+        const part = await session.step();
+        const { record } = part;
+        if (part.contacts) {
+          assert.equal(record.contacts.all, part.contacts.edges.length);
+          assert.equal(record.contacts.active, part.contacts.active.filter((one) => one === 1).length);
+        }
+        assert.deepEqual(record.counts[0], invertedOf(session.body, part.trial), `${record.part} ${record.k}`);
+        if (record.part === 'outcome') steps += 1;
+        // where the polisher fails x may go a part of the way
+        const there = record.part === 'outcome' && part.result.every((x, i) => x === part.trial[i]);
+        if (there) assert.equal(record.meeting, 0, 'nothing that is handed out crosses');
+      }
+      assert.equal(session.newest.iteration, steps, 'steps are counted on');
+      assert.equal(session.newest.status, 'converged');
+      assert.deepEqual([session.result.outcome.globallyInjective, session.result.outcome.intersections], [true, 0]);
+    }
+    const { records: all } = session;
+    for (let i = 1; i <= steps; i += 1) {
+      const own = all.filter(({ iteration, part }) => iteration === i && part === 'quadratic');
+      const { gini: { qpIterations } } = own[0];
+      assert.deepEqual(own.map(({ k, of }) => [k, of]), Array.from({ length: qpIterations + 1 }, (_, k) => [k, qpIterations]));
+    }
+    assert.ok(all.some(({ part, k }) => part === 'quadratic' && k > 5), 'the second move takes iterations');
+    assert.ok(Math.max(...all.map(({ meeting = 0 }) => meeting)) > 10);
+    assert.ok(Math.max(...all.map(({ contacts }) => contacts?.active ?? 0)) > 0);
+  });
+
+  test('of several places to go only the newest waits, and what cannot be is told', async () => {
+    const told = [];
+    let free;
+    const gate = new Promise((resolve) => { free = resolve; });
+    const slow = {
+      ...library,
+      untangle: async (body, options) => {
+        const solver = core.untangle(body, options);
+        const { movePins } = solver;
+        solver.movePins = async (targets) => { told.push(targets.positions[0]); await gate; return movePins.call(solver, targets); };
+        return solver;
+      },
+    };
+    const session = new UntangleSession(slow);
+    await session.open({ source: { body: 'flat-hooks', size: 1000 }, held: 'twisted', start: 'random', energy: 'arap' });
+    const { vertices, at } = session.problem.groups[1];
+    const further = (by) => ({ vertices, positions: at.map((x, i) => (i % 3 === 0 ? x + by : x)) });
+    const sent = [0.01, 0.02, 0.03].map((by) => session.aim(further(by)));
+    free();
+    await Promise.all(sent);
+    assert.deepEqual(told, [0.01, 0.03].map((by) => at[0] + by));
+    await assert.rejects(session.aim({ vertices: Uint32Array.of(99_999), positions: new Float64Array(3) }), { code: 'invalid-option' });
+    while (!session.finished) await session.step();
+    assert.equal(session.newest.status, 'converged');
+  });
+});
+
+describe('the page', () => {
+  onPage('hooks are pulled, further and further, with their contacts drawn and counted', { query: HOOKS, viewport: WIDE }, async (page) => {
+    assert.match(await page.textContent('#invite-text'), /Two hooks, one in the other/);
+    assert.ok(await page.isVisible('#further') && await page.isHidden('#held') && await page.isHidden('#untangle-start'));
+    assert.ok(await page.isDisabled('#size option[value="10000"]'));
+    assert.match(await statusText(page), /the start.*0 inverted · 0 pairs cross · 0 contacts, 0 active/);
+    await toTheEnd(page);
+    const first = (await records(page)).length;
+    assert.match(await statusText(page), /handed out · \d+ below η · 0 inverted · 0 pairs cross · \d+ contacts?, \d+ active/);
+    assert.deepEqual(await outcome(page).then(({ globallyInjective, intersections }) => [globallyInjective, intersections]), [true, 0]);
+    await page.click('#further');
+    await page.waitForFunction((k) => globalThis.foldfreePage.session.records.length > k, first);
+    await atRest(page);
+    await page.keyboard.press('g');
+    await page.waitForFunction(() => globalThis.foldfreePage.mode.playing);
+    await atRest(page);
+    assert.deepEqual(await outcome(page).then(({ globallyInjective, intersections }) => [globallyInjective, intersections]), [true, 0]);
+    assert.ok(await page.isHidden('#notice'));
+    // every contact of a part is drawn, by its kind
+    const all = await records(page);
+    const most = all.reduce((best, { contacts }, i) => ((contacts?.active ?? 0) > (all[best].contacts?.active ?? 0) ? i : best), 0);
+    assert.ok(most > 0);
+    await page.fill('#history', String(most));
+    assert.match(await statusText(page), new RegExp(`${all[most].contacts.all} contacts, ${all[most].contacts.active} active`));
+    const [corners, edges] = await page.evaluate(() => globalThis.foldfreePage.bench.drawnContacts);
+    assert.ok(corners > 0 && edges > 0);
+    assert.equal(corners + edges, all[most].contacts.all);
+    // iterations of the quadratic problem, one by one
+    const at = all.findIndex(({ part, k, of }) => part === 'quadratic' && of > 5 && k === 3);
+    await page.fill('#history', String(at));
+    assert.match(await statusText(page), new RegExp(`step \\d+ · QP 3 of ${all[at].of} · `));
+    await page.keyboard.press('ArrowRight');
+    assert.match(await statusText(page), /QP 4 of /);
+    // x never crosses: what is handed out is the same until the outcome
+    for (const state of ['result', 'primary', 'trial']) {
+      await page.click(`[data-state="${state}"]`);
+      assert.equal(await page.evaluate(() => globalThis.foldfreePage.board.drawnInverted), all[at + 1].counts[['trial', 'result', 'primary'].indexOf(state)]);
+    }
+    // another body has none of that
+    await page.selectOption('#body', 'box');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem.source.body === 'box');
+    assert.ok(await page.isHidden('#further') && await page.isVisible('#held'));
+    assert.doesNotMatch(await statusText(page), /cross|contact/);
+  });
+
+  onPage('what is held is dragged elsewhere, and the run goes on', { query: FLAT, viewport: WIDE }, async (page) => {
+    await toTheEnd(page);
+    const before = await page.evaluate(() => {
+      const { session, mode: { hands } } = globalThis.foldfreePage;
+      return { count: session.records.length, at: [...hands.handles.groups[1].at], vertex: hands.handles.groups[1].vertices[3] };
+    });
+    const box = await page.locator('#canvas').boundingBox();
+    const [x, y] = await page.evaluate((v) => [...globalThis.foldfreePage.bench.placeOf(v)], before.vertex);
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    for (let k = 1; k <= 5; k += 1) await page.mouse.move(box.x + x - 4 * k, box.y + y - 6 * k);
+    await page.mouse.up();
+    await page.waitForFunction((count) => globalThis.foldfreePage.session.records.length > count, before.count);
+    await atRest(page);
+    const now = await page.evaluate(() => {
+      const { session, mode: { hands } } = globalThis.foldfreePage;
+      const { vertices, at } = hands.handles.groups[1];
+      return { at: [...at], is: [...vertices].flatMap((v) => [...session.result.positions.subarray(3 * v, 3 * v + 3)]), outcome: session.result.outcome };
+    });
+    assert.ok(now.at.every((p, i) => (i % 3 === 0 ? p < before.at[i] - 0.02 : i % 3 === 1 ? p > before.at[i] + 0.02 : p === before.at[i])));
+    assert.deepEqual(now.is, now.at, 'it got there');
+    assert.deepEqual([now.outcome.globallyInjective, now.outcome.intersections], [true, 0]);
+    // keys do the same, and pin nothing
+    await page.keyboard.press('h');
+    await page.keyboard.press('h');
+    await page.keyboard.press('n');
+    const { length } = await records(page);
+    await page.keyboard.press('i');
+    await page.waitForFunction((count) => globalThis.foldfreePage.session.records.length > count, length);
+    await atRest(page);
+    assert.equal(await page.evaluate(() => globalThis.foldfreePage.mode.hands.handles.groups.length), 2);
+    // reset begins anew
+    await page.keyboard.press('r');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.records.length === 1 && globalThis.foldfreePage.shown === 0);
+    assert.deepEqual(await page.evaluate(() => [...globalThis.foldfreePage.mode.hands.handles.groups[1].at]), before.at);
+  });
+
+  onPage('where there is no way what is held stays', { query: FLAT, viewport: WIDE }, async (page) => {
+    await toTheEnd(page);
+    // one end right through the other body
+    await page.evaluate(() => {
+      const { mode } = globalThis.foldfreePage;
+      const { hands } = mode;
+      const [held, pulled] = hands.handles.groups;
+      pulled.at = pulled.at.map((x, i) => held.at[i % held.at.length] + [-2, 0, 0][i % 3]);
+      return mode.aim().then(() => mode.hurry());
+    });
+    await page.waitForSelector('#notice:not([hidden])', { timeout: 120_000 });
+    assert.match(await page.textContent('#notice-title'), /No way was found|came free/);
+    assert.equal((await outcome(page)).intersections, 0, 'whatever happens');
+  });
+
+  test('is accessible, light and dark, on desks and phones, and fits them', async () => {
+    for (const [viewport, colorScheme] of [[{ width: 1300, height: 800 }, 'dark'], [{ width: 390, height: 780 }, 'light']]) {
+      const opened = await openPage(site, { query: `${CUSHION}&steps=3`, viewport, colorScheme });
+      await shownIs(opened.page, 3);
+      await audit(opened.page, `cushion, ${viewport.width}, ${colorScheme}`);
+      assert.equal(await opened.page.evaluate(() => document.documentElement.scrollWidth), viewport.width);
+      const line = await opened.page.locator('#status').evaluate((status) => [status.scrollWidth, status.clientWidth]);
+      assert.ok(line[0] <= line[1] + 1, `${line}`);
+      assert.ok(await opened.page.isVisible('#further'));
+      assert.deepEqual(opened.troubles, []);
+      await opened.close();
+    }
+  });
+});
