@@ -9,7 +9,7 @@ import { checkSolidFormat, isSolid, positionsLike, readSolid, writeDeformed } fr
 
 export const operands = 0;
 export const options = {
-  rest: text, init: text, pins: text, targets: text, hard: flag, overlap: flag, flow: flag, 'target-stiffness': text, energy: text, young: text,
+  rest: text, init: text, pins: text, targets: text, hard: flag, overlap: flag, minimize: flag, tolerance: text, flow: flag, 'target-stiffness': text, energy: text, young: text,
   poisson: text, iterations: text, threads: text, out: text, report: text, quiet,
 };
 
@@ -26,6 +26,8 @@ function settingsOf(values) {
       young: number('young', values.young),
       poisson: number('poisson', values.poisson),
       targetStiffness: number('target-stiffness', values['target-stiffness']),
+      minimize: values.minimize || undefined,
+      tolerance: number('tolerance', values.tolerance),
       maxIterations: whole('iterations', values.iterations),
     }),
   };

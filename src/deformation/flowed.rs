@@ -5,7 +5,7 @@
 
 use super::body::check;
 use super::injective::flat;
-use super::{Material, Target, Untangling};
+use super::{Material, Target, Untangling, UntanglingOptions};
 use crate::Error;
 use crate::collision::Boundary;
 use crate::embedding::{Flowed, flow_apart, harmonic_inside};
@@ -35,10 +35,11 @@ impl Untangling {
         pins: &[u32],
         targets: &[Target],
         material: Material,
-        options: &GiniOptions,
+        options: impl Into<UntanglingOptions>,
     ) -> Result<Self, Error> {
+        let options = options.into();
         let clock = Stopwatch::start();
-        needs_overlap(options)?;
+        needs_overlap(&options.gini)?;
         check(rest, start)?;
         let (shape, _) = RestShape::of_solid(rest)?;
         let all = |points: &[DVec3]| points.iter().map(DVec3::to_array).collect::<Vec<_>>();
@@ -62,10 +63,11 @@ impl Untangling {
         pins: &[u32],
         targets: &[Target],
         material: Material,
-        options: &GiniOptions,
+        options: impl Into<UntanglingOptions>,
     ) -> Result<Self, Error> {
+        let options = options.into();
         let clock = Stopwatch::start();
-        needs_overlap(options)?;
+        needs_overlap(&options.gini)?;
         check(rest, start)?;
         flat("rest", &rest.positions)?;
         flat("start", start)?;

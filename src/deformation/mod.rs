@@ -2,6 +2,7 @@
 
 mod body;
 mod cloth;
+mod engine;
 mod flowed;
 mod injective;
 mod options;
@@ -10,6 +11,7 @@ mod supports;
 mod untangling;
 
 pub use cloth::ClothOptions;
+pub use engine::UntanglingOptions;
 pub use options::{DeformationMethod, DeformationOptions, Material};
 pub use problem::Deformation;
 pub(crate) use supports::Supports;

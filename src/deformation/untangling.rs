@@ -1,17 +1,16 @@
 //! Untangling: from any start to a map without inverted elements.
 
 use super::body::check;
+use super::engine::{Engine, UntanglingOptions};
 use super::injective::flat;
 use super::{Material, Supports, Target};
 use crate::Error;
 use crate::certificate::{Certificate, SolidCertificate};
 use crate::embedding::Flowed;
-use crate::energy::{Arap, Dirichlet, NeoHookean, StableNeoHookean, SymmetricDirichlet};
 use crate::geometry::RestShape;
-use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, TraceState};
+use crate::gini::{GiniProblem, Outcome, TraceState};
 use crate::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};
 use crate::optim::{BuildError, Solver, StepReport, Stopwatch};
-use crate::space::{Plane, Solid};
 use glam::{DVec2, DVec3};
 
 /// An untangling in progress, of a solid or of triangles in a plane z = constant.
@@ -32,13 +31,13 @@ enum Rest {
 }
 
 enum Body {
-    Plane(Box<Gini<2>>),
-    Solid(Box<Gini<3>>),
+    Plane(Engine<2>),
+    Solid(Engine<3>),
 }
 
 impl Untangling {
     /// Of tetrahedra. `start` has one position a vertex; pins are held there, or, where they have targets, at these;
-    /// targets of other vertices pull. A component without either is free. With [`GiniOptions::overlap`] pins with
+    /// targets of other vertices pull. A component without either is free. With [`GiniOptions::overlap`](crate::gini::GiniOptions::overlap) pins with
     /// targets begin where they start, and move there as soon as the way is free.
     ///
     /// # Errors
@@ -50,8 +49,9 @@ impl Untangling {
         pins: &[u32],
         targets: &[Target],
         material: Material,
-        options: &GiniOptions,
+        options: impl Into<UntanglingOptions>,
     ) -> Result<Self, Error> {
+        let options = options.into();
         let clock = Stopwatch::start();
         check(rest, start)?;
         let (shape, turned) = RestShape::of_solid(rest)?;
@@ -59,23 +59,10 @@ impl Untangling {
         if turned {
             notes.push("the mesh was inside out: all tetrahedra were turned".into());
         }
-        let keep = options.overlap;
+        let keep = options.gini.overlap;
         let prepared = Prepared::new(rest, start, pins, targets, (3, keep), &mut notes)?;
         let problem = prepared.problem(&shape);
-        let mut solver = Box::new(match material {
-            Material::NeoHookean { young, poisson } => {
-                Gini::new::<Solid, _>(problem, NeoHookean::new(young, poisson)?, *options)
-            }
-            Material::StableNeoHookean { young, poisson } => {
-                Gini::new::<Solid, _>(problem, StableNeoHookean::new(young, poisson)?, *options)
-            }
-            Material::Arap => Gini::new::<Solid, _>(problem, Arap, *options),
-            Material::SymmetricDirichlet => {
-                Gini::new::<Solid, _>(problem, SymmetricDirichlet, *options)
-            }
-            Material::Dirichlet => Gini::new::<Solid, _>(problem, Dirichlet, *options),
-            Material::StVenantKirchhoff { .. } => return Err(unknown_energy("solids").into()),
-        }?);
+        let mut solver = Engine::of_solid(problem, material, &options)?;
         if !prepared.moves.is_empty() {
             solver.move_pins(&prepared.moves)?;
         }
@@ -99,8 +86,9 @@ impl Untangling {
         pins: &[u32],
         targets: &[Target],
         material: Material,
-        options: &GiniOptions,
+        options: impl Into<UntanglingOptions>,
     ) -> Result<Self, Error> {
+        let options = options.into();
         let clock = Stopwatch::start();
         check(rest, start)?;
         flat("rest", &rest.positions)?;
@@ -110,17 +98,10 @@ impl Untangling {
         if turned {
             notes.push("the mesh was clockwise: all triangles were turned".into());
         }
-        let keep = options.overlap;
+        let keep = options.gini.overlap;
         let prepared = Prepared::new(rest, start, pins, targets, (2, keep), &mut notes)?;
         let problem = prepared.problem(&shape);
-        let mut solver = Box::new(match material {
-            Material::Arap => Gini::new::<Plane, _>(problem, Arap, *options),
-            Material::SymmetricDirichlet => {
-                Gini::new::<Plane, _>(problem, SymmetricDirichlet, *options)
-            }
-            Material::Dirichlet => Gini::new::<Plane, _>(problem, Dirichlet, *options),
-            _ => return Err(unknown_energy("triangles in a plane").into()),
-        }?);
+        let mut solver = Engine::of_plane(problem, material, &options)?;
         if !prepared.moves.is_empty() {
             solver.move_pins(&in_plane(&prepared.moves))?;
         }
@@ -138,10 +119,10 @@ impl Untangling {
         })
     }
 
-    /// With [`GiniOptions::overlap`]: has pinned vertices move to other points, and the run go on.
+    /// With [`GiniOptions::overlap`](crate::gini::GiniOptions::overlap): has pinned vertices move to other points, and the run go on.
     ///
     /// # Errors
-    /// As [`Gini::move_pins`].
+    /// As [`crate::gini::Gini::move_pins`].
     pub fn move_pins(&mut self, pins: &[(u32, DVec3)]) -> Result<(), BuildError> {
         let pins: Vec<(u32, [f64; 3])> = pins.iter().map(|&(v, p)| (v, p.to_array())).collect();
         match &mut self.solver {
@@ -171,16 +152,16 @@ impl Untangling {
     /// The solver.
     pub fn solver(&self) -> &dyn Solver {
         match &self.solver {
-            Body::Plane(solver) => &**solver,
-            Body::Solid(solver) => &**solver,
+            Body::Plane(solver) => solver.solver(),
+            Body::Solid(solver) => solver.solver(),
         }
     }
 
     /// The solver, to be stepped.
     pub fn solver_mut(&mut self) -> &mut dyn Solver {
         match &mut self.solver {
-            Body::Plane(solver) => &mut **solver,
-            Body::Solid(solver) => &mut **solver,
+            Body::Plane(solver) => solver.solver_mut(),
+            Body::Solid(solver) => solver.solver_mut(),
         }
     }
 
@@ -197,11 +178,11 @@ impl Untangling {
         self.in_space(self.solver().positions())
     }
 
-    /// x̄ of the paper, the state of the primary solver: neither injective nor free of intersections.
+    /// x̄ of the paper, the state of GINI's primary solver: neither injective nor free of intersections.
     pub fn primary_positions(&self) -> Vec<DVec3> {
         match &self.solver {
-            Body::Plane(solver) => self.in_space(&solver.primary()),
-            Body::Solid(solver) => self.in_space(&solver.primary()),
+            Body::Plane(solver) => self.in_space(&solver.gini().primary()),
+            Body::Solid(solver) => self.in_space(&solver.gini().primary()),
         }
     }
 
@@ -218,19 +199,19 @@ impl Untangling {
         self.in_space(&state.positions)
     }
 
-    /// The polisher's states in the newest step; see [`Gini::trace`].
+    /// The polisher's states in the newest step; see [`crate::gini::Gini::trace`].
     pub fn trace(&self) -> &[TraceState] {
         match &self.solver {
-            Body::Plane(solver) => solver.trace(),
-            Body::Solid(solver) => solver.trace(),
+            Body::Plane(solver) => solver.gini().trace(),
+            Body::Solid(solver) => solver.gini().trace(),
         }
     }
 
-    /// The states of the quadratic problem in the newest step; see [`Gini::quadratic_trace`].
+    /// The states of the quadratic problem in the newest step; see [`crate::gini::Gini::quadratic_trace`].
     pub fn quadratic_trace(&self) -> &[TraceState] {
         match &self.solver {
-            Body::Plane(solver) => solver.quadratic_trace(),
-            Body::Solid(solver) => solver.quadratic_trace(),
+            Body::Plane(solver) => solver.gini().quadratic_trace(),
+            Body::Solid(solver) => solver.gini().quadratic_trace(),
         }
     }
 
@@ -272,13 +253,6 @@ impl Untangling {
 
 fn in_plane(pins: &[(u32, [f64; 3])]) -> Vec<(u32, [f64; 2])> {
     pins.iter().map(|&(v, [x, y, _])| (v, [x, y])).collect()
-}
-
-fn unknown_energy(body: &str) -> BuildError {
-    BuildError::InvalidOption {
-        option: "energy",
-        what: format!("is not known for untangling {body}"),
-    }
 }
 
 /// Start, pins and springs as the solver wants them.

@@ -14,6 +14,8 @@ use core::marker::PhantomData;
 /// element or, where overlap counts, has the boundary pass through itself (Overby, Kaufman & Narain 2021, §8.2, where
 /// "time to convergence" is measured so). The energy falls, and what GINI has reached is kept.
 ///
+/// Where an energy is least folded (ARAP), elements end as flat as numbers allow: this is for energies that mind.
+///
 /// Nothing pushes bodies in contact apart: Newton's method stalls where the way to less energy leads through a contact.
 pub struct GiniThenNewton<const D: usize> {
     first: Gini<D>,
@@ -72,9 +74,9 @@ impl<const D: usize> GiniThenNewton<D> {
             external: (!external.springs.is_empty()).then_some(&external),
         };
         let mut second = Newton::with_curvature::<S, E>(same, energy, curvature, 0.0, second)?;
-        match overlap {
-            true => second.keep_apart(problem.rest)?,
-            false => second.keep_positive(),
+        second.keep_positive();
+        if overlap {
+            second.keep_apart(problem.rest)?;
         }
         let mut this = Self {
             report: first.report().clone(),
@@ -91,16 +93,24 @@ impl<const D: usize> GiniThenNewton<D> {
         &self.first
     }
 
-    /// GINI, to be told what to do; it is what runs until it has converged.
-    pub fn first_mut(&mut self) -> &mut Gini<D> {
-        &mut self.first
+    /// As [`Gini::set_trace`].
+    pub fn set_trace(&mut self, on: bool) {
+        self.first.set_trace(on);
     }
 
-    /// GINI has been given something else to do: it begins again.
-    pub fn begin_again(&mut self) {
+    /// Has pinned vertices move elsewhere: GINI goes on from where the map is.
+    ///
+    /// # Errors
+    /// As [`Gini::move_pins`].
+    pub fn move_pins(&mut self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
+        if self.switched {
+            self.first.restart(self.second.positions());
+        }
+        self.first.move_pins(pins)?;
         self.switched = false;
         self.report = self.first.report().clone();
         self.switch();
+        Ok(())
     }
 
     /// What is known of the newest positions.

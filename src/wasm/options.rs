@@ -1,10 +1,11 @@
 //! Options from a JavaScript object. Unknown keys and wrong kinds of value are errors that name the key.
 
 use super::error::{Fallible, invalid_option};
-use crate::deformation::{DeformationMethod, DeformationOptions, Material};
+use crate::deformation::{DeformationMethod, DeformationOptions, Material, UntanglingOptions};
 use crate::gini::GiniOptions;
 use crate::lim::LimOptions;
 use crate::mixed_integer::MixedIntegerOptions;
+use crate::newton::NewtonOptions;
 use crate::parameterization::ParameterizationOptions;
 use js_sys::{Object, Reflect};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -82,6 +83,11 @@ pub struct UntangleSettings {
     /// With `overlap`: end where no vertex has moved by more than this in a step, relative to the body's size. Where it
     /// is left out and `overlap` is set: 1e-3.
     pub settle: f64,
+    /// Then lower the energy (not of arap and dirichlet, whose minima fold) by Newton's method? It keeps all elements
+    /// positive and, with `overlap`, the boundary from meeting itself.
+    pub minimize: bool,
+    /// With `minimize`: stop when the energy changes by less than this part in a step.
+    pub tolerance: f64,
 }
 
 impl Default for UntangleSettings {
@@ -100,12 +106,14 @@ impl Default for UntangleSettings {
             flow: false,
             contact_offset: options.contact_offset,
             settle: options.settle,
+            minimize: false,
+            tolerance: 1e-6,
         }
     }
 }
 
 /// The material, the options, and whether the start's boundary is to flow. `undefined` and `null` stand for the defaults.
-pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptions, bool)> {
+pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, UntanglingOptions, bool)> {
     let settings: UntangleSettings = options(value)?;
     let material = Material::named(&settings.energy, settings.young, settings.poisson);
     let Some(material) = material.filter(|_| UNTANGLE_ENERGIES.contains(&&*settings.energy)) else {
@@ -121,7 +129,7 @@ pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptio
         Ok(if set { value_of } else { otherwise })
     };
     let stiffness = settings.target_stiffness;
-    let options = GiniOptions {
+    let gini = GiniOptions {
         max_qp_iterations: settings.max_qp_iterations,
         max_polish_iterations: settings.max_polish_iterations,
         offset: settings.offset,
@@ -131,6 +139,12 @@ pub(super) fn untangle_options(value: &JsValue) -> Fallible<(Material, GiniOptio
         contact_offset: settings.contact_offset,
         settle: given("settle", settings.settle, usual.settle)?,
     };
+    let minimize = settings.minimize.then(|| NewtonOptions {
+        tolerance: settings.tolerance,
+        max_iterations: settings.max_iterations,
+        ..Default::default()
+    });
+    let options = UntanglingOptions { gini, minimize };
     Ok((material, options, settings.flow))
 }
 

@@ -42,7 +42,7 @@ impl WasmUntangling {
             true => Untangling::through_flow,
             false => Untangling::of_solid,
         };
-        let inner = new(rest, &start, pins, &targets, material, &options).map_err(thrown)?;
+        let inner = new(rest, &start, pins, &targets, material, options).map_err(thrown)?;
         Ok(Self { inner })
     }
 
@@ -65,7 +65,7 @@ impl WasmUntangling {
             true => Untangling::through_flow_in_plane,
             false => Untangling::of_plane,
         };
-        let inner = new(rest, &start, pins, &targets, material, &options).map_err(thrown)?;
+        let inner = new(rest, &start, pins, &targets, material, options).map_err(thrown)?;
         Ok(Self { inner })
     }
 

@@ -3,6 +3,7 @@
 
 mod held_out;
 
+#[allow(unused_imports)]
 pub use held_out::*;
 
 use foldfree::mesh::{SimplicialMesh, SolidMesh, SurfaceMesh};

@@ -4,6 +4,7 @@
 
 mod wheel;
 
+#[allow(unused_imports)]
 pub use wheel::spiked_wheel;
 
 use foldfree::certificate::{orientation, orientation_of_tetrahedron};

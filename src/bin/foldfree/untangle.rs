@@ -9,10 +9,11 @@ use crate::{Outcome, files, handles, say};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use foldfree::certificate::{Certificate, SolidCertificate};
-use foldfree::deformation::{Material, Target, Untangling};
+use foldfree::deformation::{Material, Target, Untangling, UntanglingOptions};
 use foldfree::embedding::Flowed;
 use foldfree::gini::GiniOptions;
 use foldfree::mesh::{SolidMesh, SurfaceMesh, io};
+use foldfree::newton::NewtonOptions;
 use foldfree::optim::{CancelToken, Solver, Status, Stopwatch};
 use glam::{DVec2, DVec3};
 use serde::Serialize;
@@ -55,6 +56,13 @@ pub struct Untangle {
     /// flow, then every vertex of it that has no target is pulled back. Pins go back to where they are in INIT.
     #[arg(long, requires = "overlap")]
     pub flow: bool,
+    /// Then lower the energy (not arap or dirichlet, whose minima fold) by Newton's method; it keeps all elements positive
+    /// and, with --overlap, the boundary from meeting itself.
+    #[arg(long)]
+    pub minimize: bool,
+    /// With --minimize: stop when the energy changes by less than this part in a step.
+    #[arg(long, value_name = "T", default_value_t = 1e-6, value_parser = positive)]
+    pub tolerance: f64,
     /// How hard targets pull, relative to how hard the body holds on to the vertex it holds on to most: 1, with
     /// --overlap 1e-5.
     #[arg(long, value_name = "K", value_parser = positive)]
@@ -98,6 +106,8 @@ struct UntangleReport<C: Serialize> {
     energy: String,
     #[serde(serialize_with = "snake_keys")]
     options: GiniOptions,
+    /// With --minimize: its tolerance.
+    minimized_to: Option<f64>,
     threads: usize,
     vertices: usize,
     elements: usize,
@@ -137,13 +147,13 @@ fn solid(arguments: &Untangle, rest_path: &Path) -> Result<Outcome, Failure> {
     let start = read_positions(&arguments.init)?;
     check_start(&arguments.init, &start, rest.positions.len())?;
     let (pins, targets) = arguments.handles(start.len())?;
-    let (material, options) = (arguments.material(), arguments.options());
+    let (material, options) = (arguments.material(), arguments.settings());
     let new = match arguments.flow {
         true => Untangling::through_flow,
         false => Untangling::of_solid,
     };
     let untangling =
-        new(&rest, &start, &pins, &targets, material, &options).map_err(Failure::new)?;
+        new(&rest, &start, &pins, &targets, material, options).map_err(Failure::new)?;
     let body = Body {
         path: rest_path,
         elements: rest.simplices.len(),
@@ -168,13 +178,13 @@ fn planar(arguments: &Untangle, rest_path: &Path) -> Result<Outcome, Failure> {
     let start = files::read_mesh(&arguments.init)?.mesh.positions;
     check_start(&arguments.init, &start, rest.positions.len())?;
     let (pins, targets) = arguments.handles(start.len())?;
-    let (material, options) = (arguments.material(), arguments.options());
+    let (material, options) = (arguments.material(), arguments.settings());
     let new = match arguments.flow {
         true => Untangling::through_flow_in_plane,
         false => Untangling::of_plane,
     };
     let untangling =
-        new(&rest, &start, &pins, &targets, material, &options).map_err(Failure::new)?;
+        new(&rest, &start, &pins, &targets, material, options).map_err(Failure::new)?;
     let body = Body {
         path: rest_path,
         elements: rest.simplices.len(),
@@ -248,6 +258,17 @@ impl Untangle {
         }
     }
 
+    fn settings(&self) -> UntanglingOptions {
+        UntanglingOptions {
+            gini: self.options(),
+            minimize: self.minimize.then(|| NewtonOptions {
+                tolerance: self.tolerance,
+                max_iterations: self.iterations,
+                ..NewtonOptions::default()
+            }),
+        }
+    }
+
     fn run<C: Serialize>(
         &self,
         mut untangling: Untangling,
@@ -301,6 +322,7 @@ impl Untangle {
                 criterion: report::criterion(status),
                 energy: self.energy.clone(),
                 options: self.options(),
+                minimized_to: self.minimize.then_some(self.tolerance),
                 threads: rayon::current_num_threads(),
                 vertices: positions.len(),
                 elements: body.elements,

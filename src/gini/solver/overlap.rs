@@ -17,6 +17,18 @@ const LEAST_WAY: f64 = 1e-4;
 const LEAST_STRIDE: f64 = 1.0 / 128.0;
 
 impl<const D: usize> Gini<D> {
+    /// Goes on from these positions, vertices × dimension, which have to be as injective as x is; another solver found
+    /// them.
+    pub(crate) fn restart(&mut self, positions: &[f64]) {
+        for (position, &slot) in positions.as_chunks::<D>().0.iter().zip(&self.slot) {
+            self.trial[slot as usize] = *position;
+        }
+        self.elements.values(&self.trial, &mut self.trial_values);
+        self.accept(self.count_inverted());
+        self.publish();
+        self.begin_anew();
+    }
+
     /// Has pinned vertices move elsewhere, hard: x̄ has them there at once, x stays where it is until the way there is
     /// free. The run goes on, with all its steps anew.
     ///

@@ -39,8 +39,7 @@ impl<const D: usize> Apart for Detection<D> {
 
 impl Newton {
     /// From here on no step has the boundary of the body pass through itself or another body: it ends before
-    /// (conservative detection). Nothing pushes bodies apart; where they press on each other, it stalls. And none inverts
-    /// an element.
+    /// (conservative detection). Nothing pushes bodies apart; where they press on each other, it stalls.
     ///
     /// # Errors
     /// `NonManifoldFacet` where more than two elements share a facet.
@@ -49,12 +48,11 @@ impl Newton {
             2 => Box::new(self.detection::<2>(rest)?),
             _ => Box::new(self.detection::<3>(rest)?),
         });
-        self.keep_positive();
         Ok(())
     }
 
     /// From here on no step inverts an element, whatever the energy.
-    pub fn keep_positive(&mut self) {
+    pub(crate) fn keep_positive(&mut self) {
         self.keeps_positive = true;
     }
 

@@ -1,6 +1,7 @@
 //! How far to go along a direction.
 
 use super::Newton;
+use crate::newton::NewtonOptions;
 use crate::newton::bound::step_bound;
 use crate::optim::vectors::{dot, set_combination};
 use crate::quasi_newton::evaluation::Value;
@@ -32,19 +33,21 @@ impl Newton {
     /// The longest step that inverts nothing, if inverting costs, and on which the boundary does not pass through
     /// itself, if it must not.
     pub(super) fn longest_step(&mut self) -> f64 {
-        let (fraction, longest) = (self.options.fraction, self.options.longest);
-        if !(self.evaluation.shape.barrier || self.keeps_positive) {
-            return longest;
-        }
-        let positive = step_bound(
-            &self.evaluation.blocks,
-            self.evaluation.elements(),
-            &self.x,
-            &self.direction,
-            fraction,
-            longest,
-            &mut self.bounds,
-        );
+        let NewtonOptions {
+            fraction, longest, ..
+        } = self.options;
+        let positive = match self.evaluation.shape.barrier || self.keeps_positive {
+            true => step_bound(
+                &self.evaluation.blocks,
+                self.evaluation.elements(),
+                &self.x,
+                &self.direction,
+                fraction,
+                longest,
+                &mut self.bounds,
+            ),
+            false => longest,
+        };
         match &mut self.apart {
             Some(apart) => apart.bound(&self.x, &self.direction, fraction, positive),
             None => positive,
