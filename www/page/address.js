@@ -32,7 +32,7 @@ export const DEFAULTS = Object.freeze({
 const CHOICES = {
   flatten: {
     start: ['automatic', 'harmonic', 'tutte', 'lscm', 'random', 'collapsed'],
-    method: ['wrapd', 'wrapd+cm', 'cm', 'slim', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
+    method: ['wrapd', 'wrapd+cm', 'cm', 'slim', 'gini', 'gini+cm', 'r-admm', 'w-admm', 'admm-pd', 'arap', 'lscm', 'harmonic', 'tutte'],
     energy: ['symmetric-dirichlet', 'arap'],
   },
   deform: {

@@ -27,7 +27,7 @@ export function spoken(record) {
 /** Names of methods, as people write them. */
 export const METHODS = {
   wrapd: 'WRAPD', 'r-admm': 'R-ADMM', 'w-admm': 'W-ADMM', 'admm-pd': 'ADMM-PD', 'l-bfgs': 'L-BFGS', arap: 'ARAP',
-  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton', lim: 'LIM',
+  cm: 'CM', 'wrapd+cm': 'WRAPD+CM', slim: 'SLIM', gini: 'GINI', 'gini+cm': 'GINI+CM', newton: 'Newton', 'wrapd+newton': 'WRAPD+Newton', lim: 'LIM',
   lscm: 'LSCM', harmonic: 'Harmonic', tutte: 'Tutte',
 };
 
@@ -38,7 +38,7 @@ export const ROUNDING_NAMES = { direct: 'direct', greedy: 'greedy', 'two-opt': '
 export const NEEDS_INJECTIVE = ['cm', 'slim'];
 
 /** Methods that minimise symmetric Dirichlet alone. */
-export const MAJORIZES = ['cm', 'wrapd+cm'];
+export const MAJORIZES = ['cm', 'wrapd+cm', 'gini+cm'];
 
 /** Starts that are full of inversions. */
 export const FOLDED_STARTS = ['random', 'collapsed'];

@@ -87,6 +87,7 @@ pub fn method_name(method: &str) -> &str {
         "lim-off" => "LIM, free",
         "lim-frozen-off" => "LIM, frozen, free",
         "gini" => "GINI",
+        "gini+cm" => "GINI+CM",
         "arap" => "ARAP",
         "lscm" => "LSCM",
         "harmonic" => "Harmonic",
@@ -106,7 +107,7 @@ pub fn citation(method: &str) -> &'static str {
         "l-bfgs" => "Liu et al. 2017",
         "lim" => "Schüller et al. 2013",
         "lim-frozen" | "lim-off" | "lim-frozen-off" => "Schüller 2013",
-        "gini" => "Overby et al. 2021",
+        "gini" | "gini+cm" => "Overby et al. 2021",
         "arap" => "Liu et al. 2008",
         "lscm" => "Lévy et al. 2002",
         "harmonic" => "Eck et al. 1995",
@@ -132,6 +133,9 @@ pub fn handover(method: &str, switched_at: Option<u32>) -> Option<String> {
     Some(match switched_at {
         Some(1) => format!("{first} made iteration 1; {then} goes on from there."),
         Some(last) => format!("{first} made iterations 1 to {last}; {then} goes on from there."),
+        None if method == "gini+cm" => {
+            format!("{first} for now; {then} takes over when the map is injective and has settled.")
+        }
         None => {
             format!("{first} for now; {then} takes over at the first iterate without inversions.")
         }
@@ -408,6 +412,7 @@ mod tests {
             "l-bfgs",
             "cm",
             "wrapd+cm",
+            "gini+cm",
             "slim",
             "newton",
             "wrapd+newton",

@@ -441,7 +441,7 @@ impl Bench {
 
     /// Whether what is on show is an untangling.
     pub fn is_untangling(&self) -> bool {
-        self.run.method == "gini"
+        self.run.method == "gini" && self.body.is_some()
     }
 
     /// What things are called on this bench.
