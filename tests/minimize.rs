@@ -1,6 +1,5 @@
 //! Once GINI has converged, Newton's method lowers the energy, and the map stays as injective as it was.
 
-#[allow(dead_code)]
 mod overlap_problems;
 mod untangle_problems;
 
