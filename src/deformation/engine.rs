@@ -26,20 +26,6 @@ impl From<&GiniOptions> for UntanglingOptions {
     }
 }
 
-impl UntanglingOptions {
-    fn check(&self, material: Material) -> Result<(), BuildError> {
-        let folds = matches!(material, Material::Arap | Material::Dirichlet);
-        if self.minimize.is_some() && folds {
-            return Err(BuildError::InvalidOption {
-                option: "minimize",
-                what: "is not for arap and dirichlet, whose minima fold: symmetric-dirichlet, neo-hookean or stable-neo-hookean are"
-                    .into(),
-            });
-        }
-        Ok(())
-    }
-}
-
 /// A solver in D dimensions.
 pub(super) enum Engine<const D: usize> {
     Gini(Box<Gini<D>>),
@@ -47,6 +33,26 @@ pub(super) enum Engine<const D: usize> {
 }
 
 impl<const D: usize> Engine<D> {
+    /// Of energies whose minima fold.
+    fn alone<S: Space, E: Energy<S>>(
+        problem: GiniProblem,
+        energy: E,
+        options: &UntanglingOptions,
+    ) -> Result<Self, BuildError> {
+        if options.minimize.is_some() {
+            return Err(BuildError::InvalidOption {
+                option: "minimize",
+                what: "is not for arap and dirichlet, whose minima fold: symmetric-dirichlet, neo-hookean or stable-neo-hookean are"
+                    .into(),
+            });
+        }
+        Ok(Self::Gini(Box::new(Gini::new::<S, E>(
+            problem,
+            energy,
+            options.gini,
+        )?)))
+    }
+
     fn new<S: Space, E: Energy<S>>(
         problem: GiniProblem,
         energy: E,
@@ -114,7 +120,6 @@ impl Engine<3> {
         material: Material,
         options: &UntanglingOptions,
     ) -> Result<Self, BuildError> {
-        options.check(material)?;
         match material {
             Material::NeoHookean { young, poisson } => {
                 Self::new::<Solid, _>(problem, NeoHookean::new(young, poisson)?, options)
@@ -122,11 +127,11 @@ impl Engine<3> {
             Material::StableNeoHookean { young, poisson } => {
                 Self::new::<Solid, _>(problem, StableNeoHookean::new(young, poisson)?, options)
             }
-            Material::Arap => Self::new::<Solid, _>(problem, Arap, options),
+            Material::Arap => Self::alone::<Solid, _>(problem, Arap, options),
             Material::SymmetricDirichlet => {
                 Self::new::<Solid, _>(problem, SymmetricDirichlet, options)
             }
-            Material::Dirichlet => Self::new::<Solid, _>(problem, Dirichlet, options),
+            Material::Dirichlet => Self::alone::<Solid, _>(problem, Dirichlet, options),
             Material::StVenantKirchhoff { .. } => Err(unknown_energy("solids")),
         }
     }
@@ -142,16 +147,15 @@ impl Engine<2> {
         material: Material,
         options: &UntanglingOptions,
     ) -> Result<Self, BuildError> {
-        options.check(material)?;
-        match (material, options.minimize) {
-            (Material::SymmetricDirichlet, Some(newton)) => Ok(Self::Then(Box::new(
-                GiniThenNewton::composite_majorization(problem, options.gini, newton)?,
-            ))),
-            (Material::Arap, _) => Self::new::<Plane, _>(problem, Arap, options),
-            (Material::SymmetricDirichlet, None) => {
-                Self::new::<Plane, _>(problem, SymmetricDirichlet, options)
-            }
-            (Material::Dirichlet, _) => Self::new::<Plane, _>(problem, Dirichlet, options),
+        match material {
+            Material::SymmetricDirichlet => match options.minimize {
+                Some(newton) => Ok(Self::Then(Box::new(
+                    GiniThenNewton::composite_majorization(problem, options.gini, newton)?,
+                ))),
+                None => Self::alone::<Plane, _>(problem, SymmetricDirichlet, options),
+            },
+            Material::Arap => Self::alone::<Plane, _>(problem, Arap, options),
+            Material::Dirichlet => Self::alone::<Plane, _>(problem, Dirichlet, options),
             _ => Err(unknown_energy("triangles in a plane")),
         }
     }

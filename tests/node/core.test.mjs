@@ -56,6 +56,24 @@ describe('core', () => {
     });
   });
 
+  it('makes maps that do not overlap, where the others do', () => {
+    const spiral = core.generate('spiral-ramp', 1000);
+    const certified = (method) => {
+      const solver = core.parameterize(spiral, { method, start: 'lscm', maxIterations: 500 });
+      for (const step of solver) void step;
+      const { certificate } = solver.result();
+      solver.free();
+      return certificate;
+    };
+    assert.ok(certified('wrapd').boundaryCrossings.length > 0);
+    for (const method of ['gini', 'gini+cm']) {
+      const certificate = certified(method);
+      assert.equal(certificate.inverted.length, 0);
+      assert.equal(certificate.boundaryCrossings.length, 0);
+      assert.equal(certificate.globallyInjective, true);
+    }
+  });
+
   it('says which methods need a start without inversions', () => {
     using_(core.generate('bumpy-cap', 300), (mesh) => {
       for (const method of ['cm', 'slim']) {

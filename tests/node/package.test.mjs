@@ -26,11 +26,12 @@ describe('the packed package', () => {
   // time. Second-order methods, which share all that does not depend on the energy, are 85 KB (35 KB), mixed-integer
   // problems 133 KB (58 KB): elimination, three engines, lattice reduction and enumeration; untangling 134 KB (52 KB),
   // with the element loops of five energies, and what keeps boundaries from meeting, in two dimensions each, 115 KB
-  // (43 KB).
+  // (43 KB). What shows the inside of a step, parts boundaries by a flow, and has Newton's method go on after GINI is
+  // another 114 KB (47 KB).
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_610_000, `${wasm.length} bytes`);
-    assert.ok(gzipSync(wasm, { level: 9 }).length <= 632_000);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_715_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 675_000);
   });
 
   it('pleases publint', async () => {

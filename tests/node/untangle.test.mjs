@@ -226,6 +226,29 @@ describe('untangling in this thread', () => {
     fails('invalid-option', () => core.untangle(mesh, { start: crossed, flow: true }), 'overlap');
   });
 
+  it('goes on to low distortion, and nothing inverts on the way', () => {
+    const options = { pins, start: shuffled, energy: 'symmetric-dirichlet' };
+    const alone = core.untangle(core.mesh(rest), options);
+    const energyOf = (solver) => { let last; for (const step of solver) last = step; return last; };
+    const before = energyOf(alone);
+    assert.equal(before.status, 'converged');
+    const both = core.untangle(core.mesh(rest), { ...options, minimize: true });
+    const energies = [];
+    for (const step of both) if (step.switchedAt !== undefined) energies.push([step.energy, step.inverted]);
+    assert.ok(energies.length > 2);
+    energies.forEach(([energy, count], k) => {
+      assert.equal(count, 0);
+      assert.ok(k === 0 || energy <= energies[k - 1][0], `${k}: ${energy}`);
+    });
+    // all of the rim is held at rest: the minimum is at rest
+    assert.ok(Math.abs(energies.at(-1)[0] - 1) < 1e-5, `${energies.at(-1)}`);
+    assert.ok(energies.at(-1)[0] < before.energy);
+    assert.equal(inverted(rest, both.result().positions), 0);
+    fails('invalid-option', () => core.untangle(core.mesh(rest), { pins, minimize: true }), 'minimize');
+    alone.free();
+    both.free();
+  });
+
   it('ends in bounded time where pins leave no room, and says why', () => {
     // left and right edge exchanged: the outline encloses a negative area
     const start = rest.positions.map((x, i) => (i % 3 === 0 ? 1 - x : x));
