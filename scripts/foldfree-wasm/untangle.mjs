@@ -15,11 +15,8 @@ export const options = {
 
 function settingsOf(values) {
   whole('threads', values.threads); // taken, but this build has one
-  const { targetStiffness, settle, ...defaults } = core.defaultUntangleOptions();
   return {
-    ...defaults,
-    // with overlap these two have other values, which the library knows
-    ...(values.overlap ? { overlap: true } : { targetStiffness, settle }),
+    ...core.defaultUntangleOptions(values.overlap ?? false),
     flow: values.flow ?? false,
     ...given({
       energy: values.energy,
@@ -90,9 +87,10 @@ export function run(_operand, values) {
   const last = iterations.at(-1);
   say(`${status} after ${last.iteration} steps: ${solver.setupSeconds.toFixed(3)} s to set up, ${last.seconds.toFixed(3)} s to solve; ${outcome.notPositive.length} inverted or degenerate, smallest measure ${outcome.smallestMeasure.toExponential(3)} of that at rest.`);
   obstacles.forEach(say);
-  const { energy, young, poisson, flow, ...reported } = settings;
+  const { energy, young, poisson, flow, minimize, tolerance, ...reported } = settings;
   writeReport(values.report, {
     program, rest, init, status, criterion, energy, options: reported,
+    ...(minimize && { minimizedTo: tolerance }),
     threads: core.threads,
     vertices: vertexCount,
     elements: kind.elements(body),

@@ -23,8 +23,8 @@ pub struct GiniOptions {
     /// η of contacts, in units of the body's size (the D-th root of its rest measure) or of 100 elements of mean size,
     /// whichever is less, so that results do not depend on the unit of length.
     pub contact_offset: f64,
-    /// With `overlap`: an injective state is final when no vertex has moved by more than this in the last step, in
-    /// units of the body's size. 0: the first injective state is.
+    /// With `overlap`: an injective state is final when no vertex has moved by more than this in the last step, or in a
+    /// step on average over ten, in units of the body's size. 0: the first injective state is.
     pub settle: f64,
 }
 

@@ -1,22 +1,18 @@
 //! The polisher (12), (13): Levenberg and Marquardt's method on each zone of constraints.
 
+mod normal;
+
 use super::constraint::Constraint;
 use super::simplex::corners;
 use super::zones::Zones;
 use crate::parallel;
+use normal::Row;
 
 /// Range of γ (13b).
 const DAMPING: [f64; 2] = [1e-4, 1e-1];
 
 /// Most halvings of a step.
 const MOST_HALVINGS: u32 = 12;
-
-/// Up to so many violated constraints JJᵀ + U is factored, beyond conjugate gradients are used.
-const DENSE: usize = 40;
-
-/// Most iterations of conjugate gradients, and when they end: the residual relative to the right-hand side.
-const MOST_CG: usize = 60;
-const CG_TOLERANCE: f64 = 1e-2;
 
 /// Zones that are one piece of work.
 const CHUNK: usize = 4;
@@ -79,13 +75,6 @@ pub fn polish<const D: usize>(
     sum
 }
 
-/// A violated constraint of a zone: e < 0 and its gradient on the zone's vertices.
-struct Row<const D: usize> {
-    vertices: [u32; 4],
-    gradient: [[f64; D]; 4],
-    error: f64,
-}
-
 fn step<const D: usize>(
     job: &mut Job<D>,
     constraints: &[Constraint],
@@ -123,15 +112,10 @@ fn step<const D: usize>(
     let diagonal = |row: &Row<D>| row.gradient.iter().flatten().map(|g| g * g).sum::<f64>();
     let most = rows.iter().map(diagonal).fold(0.0, f64::max);
     let shift = gamma * most;
-    let y = if !(shift > 0.0) {
-        vec![0.0; rows.len()]
-    } else if rows.len() <= DENSE {
-        solve_dense(&rows, shift)
-    } else {
-        solve_iteratively(&rows, shift, vertices.len())
+    let direction = match shift > 0.0 {
+        true => normal::direction(&rows, shift, vertices.len()),
+        false => vec![[0.0; D]; vertices.len()],
     };
-    let mut direction = vec![[0.0; D]; vertices.len()];
-    spread(&rows, &y, -1.0, &mut direction);
 
     let value = |x: &[[f64; D]], held: &[[f64; D]]| -> f64 {
         let mut sum = 0.0;
@@ -174,108 +158,4 @@ fn step<const D: usize>(
         _ => 1.0,
     };
     job.damping = (gamma * scale).clamp(DAMPING[0], DAMPING[1]);
-}
-
-/// Adds factor · Jᵀ y.
-fn spread<const D: usize>(rows: &[Row<D>], y: &[f64], factor: f64, out: &mut [[f64; D]]) {
-    for (row, y) in rows.iter().zip(y) {
-        let factor = factor * y;
-        for corner in 0..4 {
-            let out = &mut out[row.vertices[corner] as usize];
-            for i in 0..D {
-                out[i] += factor * row.gradient[corner][i];
-            }
-        }
-    }
-}
-
-fn gather<const D: usize>(row: &Row<D>, x: &[[f64; D]]) -> f64 {
-    let mut sum = 0.0;
-    for corner in 0..4 {
-        let x = &x[row.vertices[corner] as usize];
-        for i in 0..D {
-            sum += x[i] * row.gradient[corner][i];
-        }
-    }
-    sum
-}
-
-/// (JJᵀ + shift) y = e by Cholesky's factorisation. The shift keeps the pivots positive.
-fn solve_dense<const D: usize>(rows: &[Row<D>], shift: f64) -> Vec<f64> {
-    let m = rows.len();
-    let mut matrix = vec![0.0; m * m];
-    for (i, a) in rows.iter().enumerate() {
-        for (j, b) in rows[..=i].iter().enumerate() {
-            let mut sum = 0.0;
-            for (va, ga) in a.vertices.iter().zip(&a.gradient) {
-                for (vb, gb) in b.vertices.iter().zip(&b.gradient) {
-                    if va == vb {
-                        sum += ga.iter().zip(gb).map(|(a, b)| a * b).sum::<f64>();
-                    }
-                }
-            }
-            matrix[i * m + j] = sum;
-        }
-        matrix[i * m + i] += shift;
-    }
-    let mut y: Vec<f64> = rows.iter().map(|row| row.error).collect();
-    for j in 0..m {
-        let (done, rest) = matrix.split_at_mut((j + 1) * m);
-        let row = &mut done[j * m..];
-        let square: f64 = row[..j].iter().map(|l| l * l).sum();
-        let pivot = (row[j] - square).max(0.5 * shift).sqrt();
-        row[j] = pivot;
-        let row = &done[j * m..];
-        for below in rest.chunks_exact_mut(m) {
-            let product: f64 = below[..j].iter().zip(row).map(|(a, b)| a * b).sum();
-            below[j] = (below[j] - product) / pivot;
-        }
-    }
-    for i in 0..m {
-        let sum: f64 = (0..i).map(|j| matrix[i * m + j] * y[j]).sum();
-        y[i] = (y[i] - sum) / matrix[i * m + i];
-    }
-    for i in (0..m).rev() {
-        let sum: f64 = (i + 1..m).map(|j| matrix[j * m + i] * y[j]).sum();
-        y[i] = (y[i] - sum) / matrix[i * m + i];
-    }
-    y
-}
-
-/// The same by conjugate gradients, of which a step needs no more than a direction: the matrix is applied as
-/// J(Jᵀy), never formed.
-fn solve_iteratively<const D: usize>(rows: &[Row<D>], shift: f64, vertices: usize) -> Vec<f64> {
-    let m = rows.len();
-    let mut y = vec![0.0; m];
-    let mut residual: Vec<f64> = rows.iter().map(|row| row.error).collect();
-    let mut direction = residual.clone();
-    let mut image = vec![0.0; m];
-    let mut moved = vec![[0.0; D]; vertices];
-    let norm = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
-    let mut square = norm(&residual);
-    let goal = CG_TOLERANCE * CG_TOLERANCE * square;
-    for _ in 0..MOST_CG {
-        if !(square > goal) {
-            break;
-        }
-        moved.fill([0.0; D]);
-        spread(rows, &direction, 1.0, &mut moved);
-        let mut bend = 0.0;
-        for ((image, row), d) in image.iter_mut().zip(rows).zip(&direction) {
-            *image = gather(row, &moved) + shift * d;
-            bend += *image * d;
-        }
-        let step = square / bend;
-        for i in 0..m {
-            y[i] += step * direction[i];
-            residual[i] -= step * image[i];
-        }
-        let next = norm(&residual);
-        let factor = next / square;
-        square = next;
-        for (d, r) in direction.iter_mut().zip(&residual) {
-            *d = r + factor * *d;
-        }
-    }
-    y
 }

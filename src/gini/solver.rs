@@ -19,6 +19,7 @@ use crate::optim::{
     StepReport, Stopwatch,
 };
 use crate::parallel;
+use overlap::Window;
 
 /// The state with the fewest inverted elements that has been met.
 struct Best<const D: usize> {
@@ -56,6 +57,8 @@ pub struct Gini<const D: usize> {
     stride: f64,
     /// How far the last accepted step has moved a vertex at most, in units of the body's size.
     moved: f64,
+    /// How far the last few have.
+    window: Window<D>,
     /// The body's size: the D-th root of its rest measure.
     size: f64,
     /// x̄ of the paper, by slot,

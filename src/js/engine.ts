@@ -285,9 +285,9 @@ export class Core {
     return guard(() => this.#bindings.defaultLimOptions());
   }
 
-  /** The options of untangling with the values they have when left out. */
-  defaultUntangleOptions(): UntangleSettings {
-    return guard(() => this.#bindings.defaultUntangleOptions());
+  /** The options of untangling with the values they have when left out; with `overlap` some are others. */
+  defaultUntangleOptions(overlap = false): UntangleSettings {
+    return guard(() => this.#bindings.defaultUntangleOptions(overlap));
   }
 
   /** All options with the values they have when left out. */

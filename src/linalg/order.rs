@@ -2,6 +2,7 @@
 
 use super::dissection::Bisector;
 use super::{EliminationTree, Graph, SymmetricAssembly};
+use crate::parallel;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
@@ -26,6 +27,9 @@ const SOLID_DEGREE: f64 = 9.0;
 /// Below this the minimum degree takes over in a solid.
 const SMALLEST_SEPARATED: usize = 120;
 
+/// Below this both sides of a separator are for one thread.
+const SMALLEST_SHARED: usize = 1000;
+
 impl Order {
     /// Of the unknowns of a symmetric pattern given by its edges: the approximate minimum degree
     /// (Amestoy et al. 1996) on surfaces, nested dissection in solids. The order depends on the
@@ -34,9 +38,7 @@ impl Order {
         let graph = Graph::new(n, edges);
         let all: Vec<u32> = (0..n as u32).collect();
         let first = if graph.mean_degree() > SOLID_DEGREE {
-            let mut order = Vec::with_capacity(n);
-            dissected(&graph, &mut Bisector::new(&graph), &all, &mut order);
-            order
+            dissected(&graph, &mut Bisector::new(&graph), &all)
         } else {
             minimum_degree(&graph, &all)
         };
@@ -78,17 +80,26 @@ impl Order {
     }
 }
 
-/// Appends `region` by nested dissection.
-fn dissected(graph: &Graph, bisector: &mut Bisector, region: &[u32], order: &mut Vec<u32>) {
+/// `region` by nested dissection.
+fn dissected(graph: &Graph, bisector: &mut Bisector, region: &[u32]) -> Vec<u32> {
     if region.len() < SMALLEST_SEPARATED {
-        order.extend(minimum_degree(graph, region));
-        return;
+        return minimum_degree(graph, region);
     }
     let split = bisector.bisect(region);
-    for side in &split.sides {
-        dissected(graph, bisector, side, order);
-    }
+    let [one, other] = &split.sides;
+    let (mut order, rest) = match region.len() < SMALLEST_SHARED {
+        true => (
+            dissected(graph, bisector, one),
+            dissected(graph, bisector, other),
+        ),
+        false => parallel::join(
+            || dissected(graph, bisector, one),
+            || dissected(graph, &mut Bisector::new(graph), other),
+        ),
+    };
+    order.extend(rest);
     order.extend(split.separator);
+    order
 }
 
 /// The vertices of `region` (ascending) by approximate minimum degree in the graph between them and

@@ -1,6 +1,8 @@
 //! The compact form of limited-memory BFGS matrices (Byrd, Nocedal & Schnabel 1994): B = θI − W M Wᵀ with
 //! W = [Y θS] and M⁻¹ = [−D Lᵀ; L θSᵀS].
 
+use super::vectors::{dot, dots};
+
 /// A limited-memory model of a Hessian.
 pub(super) struct Compact {
     most: usize,
@@ -17,7 +19,8 @@ pub(super) struct Compact {
     pub along: Vec<f64>,
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+/// Of short vectors.
+fn inner(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -56,16 +59,19 @@ impl Compact {
             }
         }
         self.pairs.push((s.to_vec(), y.to_vec()));
-        for (i, (old, _)) in self.pairs.iter().enumerate() {
-            if i + 1 < self.pairs.len() {
-                self.ss[i].push(dot(old, s));
-                self.sy[i].push(dot(old, y));
-            }
+        let steps = self.pairs.iter().map(|(old, _)| &**old);
+        let changes = self.pairs.iter().map(|(_, old)| &**old);
+        let [mut row_ss, mut column_sy, mut row_sy] = [const { Vec::new() }; 3];
+        dots(steps.clone(), s, &mut row_ss);
+        dots(steps, y, &mut column_sy);
+        dots(changes, s, &mut row_sy);
+        let last = self.ss.len();
+        for i in 0..last {
+            self.ss[i].push(row_ss[i]);
+            self.sy[i].push(column_sy[i]);
         }
-        let olds = self.pairs.iter();
-        self.ss
-            .push(olds.clone().map(|(old, _)| dot(s, old)).collect());
-        self.sy.push(olds.map(|(_, old)| dot(s, old)).collect());
+        self.ss.push(row_ss);
+        self.sy.push(row_sy);
         self.theta = change / curvature;
     }
 
@@ -126,7 +132,7 @@ impl Compact {
     pub fn times_m(&self, v: &[f64]) -> Vec<f64> {
         match self.size() {
             0 => Vec::new(),
-            size => self.m.chunks_exact(size).map(|row| dot(row, v)).collect(),
+            size => self.m.chunks_exact(size).map(|row| inner(row, v)).collect(),
         }
     }
 
@@ -136,9 +142,9 @@ impl Compact {
             return 0.0;
         }
         for (out, row) in product.iter_mut().zip(self.m.chunks_exact(a.len())) {
-            *out = dot(row, b);
+            *out = inner(row, b);
         }
-        dot(a, product)
+        inner(a, product)
     }
 
     /// (I − M WᵀW/θ)⁻¹ M Wᵀ r over the free variables: what the inverse of the reduced matrix needs beside 1/θ.

@@ -7,6 +7,7 @@
 //! Hessian once, to the step.
 
 use super::compact::Compact;
+use super::vectors::dot;
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,10 +99,6 @@ pub fn projected_norm(lambda: &[f64], gradient: &[f64]) -> f64 {
     components.fold(0.0, |most, (&l, &g)| {
         most.max(if l > 0.0 { g.abs() } else { -g })
     })
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// How far λ may go along `direction`.

@@ -80,8 +80,8 @@ pub struct UntangleSettings {
     pub flow: bool,
     /// η of contacts, relative to the body's size.
     pub contact_offset: f64,
-    /// With `overlap`: end where no vertex has moved by more than this in a step, relative to the body's size. Where it
-    /// is left out and `overlap` is set: 1e-3.
+    /// With `overlap`: end where no vertex has moved by more than this in a step, or on average over ten, relative to the
+    /// body's size. Where it is left out and `overlap` is set: 1e-3.
     pub settle: f64,
     /// Then lower the energy (not of arap and dirichlet, whose minima fold) by Newton's method? It keeps all elements
     /// positive and, with `overlap`, the boundary from meeting itself.
@@ -90,9 +90,12 @@ pub struct UntangleSettings {
     pub tolerance: f64,
 }
 
-impl Default for UntangleSettings {
-    fn default() -> Self {
-        let options = GiniOptions::default();
+impl UntangleSettings {
+    fn usual(overlap: bool) -> Self {
+        let options = match overlap {
+            true => GiniOptions::overlap(),
+            false => GiniOptions::default(),
+        };
         Self {
             energy: "arap".into(),
             young: Material::YOUNG,
@@ -109,6 +112,12 @@ impl Default for UntangleSettings {
             minimize: false,
             tolerance: 1e-6,
         }
+    }
+}
+
+impl Default for UntangleSettings {
+    fn default() -> Self {
+        Self::usual(false)
     }
 }
 
@@ -262,10 +271,11 @@ pub fn default_lim_options() -> Fallible<JsValue> {
     serde_wasm_bindgen::to_value(&LimOptions::default()).map_err(JsValue::from)
 }
 
-/// The default options of untangling.
+/// The default options of untangling, with `overlap` or without.
 #[wasm_bindgen(js_name = defaultUntangleOptions, unchecked_return_type = "UntangleSettings")]
-pub fn default_untangle_options() -> Fallible<JsValue> {
-    serde_wasm_bindgen::to_value(&UntangleSettings::default()).map_err(JsValue::from)
+pub fn default_untangle_options(overlap: Option<bool>) -> Fallible<JsValue> {
+    let settings = UntangleSettings::usual(overlap.unwrap_or(false));
+    serde_wasm_bindgen::to_value(&settings).map_err(JsValue::from)
 }
 
 /// The default options of a mixed-integer problem.

@@ -107,6 +107,7 @@ struct UntangleReport<C: Serialize> {
     #[serde(serialize_with = "snake_keys")]
     options: GiniOptions,
     /// With --minimize: its tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
     minimized_to: Option<f64>,
     threads: usize,
     vertices: usize,

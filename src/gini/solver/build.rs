@@ -1,5 +1,6 @@
 //! What is done once.
 
+use super::overlap::Window;
 use super::{Best, Gini};
 use crate::collision::Boundary;
 use crate::energy::Energy;
@@ -135,6 +136,7 @@ impl<const D: usize> Gini<D> {
             stride: 1.0,
             failures: 0,
             moved: f64::INFINITY,
+            window: Window::new(if options.overlap { &x } else { &[] }),
             size,
             iterate,
             trial: x.clone(),

@@ -10,11 +10,51 @@ const MOST_RETREATS: usize = 30;
 /// After so many steps in a row of which only such a part was taken x̄ begins anew.
 const MOST_ADVANCES: usize = 3;
 
+/// Contacts make vertices jitter where they have settled; over so many steps they go nowhere.
+const WINDOW: usize = 10;
+
 /// Ways that are not worth it, in units of the body's size.
 const LEAST_WAY: f64 = 1e-4;
 
 /// The least part of their way that pins go at once.
 const LEAST_STRIDE: f64 = 1.0 / 128.0;
+
+/// How far vertices get in [`WINDOW`] steps.
+pub(super) struct Window<const D: usize> {
+    from: Vec<[f64; D]>,
+    steps: usize,
+    /// How far the vertex that got farthest in the last whole window got in a step on average, in units of the body's
+    /// size.
+    drift: f64,
+}
+
+impl<const D: usize> Window<D> {
+    pub(super) fn new(x: &[[f64; D]]) -> Self {
+        Self {
+            from: x.to_vec(),
+            steps: 0,
+            drift: f64::INFINITY,
+        }
+    }
+
+    fn enter(&mut self, x: &[[f64; D]], size: f64) {
+        self.steps += 1;
+        if self.steps == WINDOW {
+            self.drift = way(&self.from, x) / (WINDOW as f64 * size);
+            self.from.copy_from_slice(x);
+            self.steps = 0;
+        }
+    }
+}
+
+/// The longest way of a vertex.
+fn way<const D: usize>(from: &[[f64; D]], to: &[[f64; D]]) -> f64 {
+    let change = |(a, b): (&[f64; D], &[f64; D])| {
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
+        squares.sum::<f64>()
+    };
+    from.iter().zip(to).map(change).fold(0.0, f64::max).sqrt()
+}
 
 impl<const D: usize> Gini<D> {
     /// Goes on from these positions, vertices × dimension, which have to be as injective as x is; another solver found
@@ -65,6 +105,7 @@ impl<const D: usize> Gini<D> {
         self.place_pins();
         self.arrived = self.goals.iter().all(|&(s, p)| self.x[s as usize] == p);
         self.moved = f64::INFINITY;
+        self.window = Window::new(&self.x);
         self.begins_anew = true;
         self.idle = 0;
         self.report.iteration = 0;
@@ -148,6 +189,7 @@ impl<const D: usize> Gini<D> {
                 self.accept(self.count_inverted());
                 // more than this is not known of where it settles
                 self.moved = f64::INFINITY;
+                self.window.drift = f64::INFINITY;
                 return true;
             }
             slots.sort_unstable();
@@ -165,11 +207,7 @@ impl<const D: usize> Gini<D> {
 
     /// How far the vertex that is farthest from x is.
     fn way(&self, to: &[[f64; D]]) -> f64 {
-        let change = |(a, b): (&[f64; D], &[f64; D])| {
-            let squares = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b));
-            squares.sum::<f64>()
-        };
-        self.x.iter().zip(to).map(change).fold(0.0, f64::max).sqrt()
+        way(&self.x, to)
     }
 
     /// Is every element that is inverted at x̂ better there than at x?
@@ -190,6 +228,7 @@ impl<const D: usize> Gini<D> {
     pub(super) fn accept(&mut self, inverted: usize) {
         if self.contacts.is_some() {
             self.moved = self.way(&self.trial) / self.size;
+            self.window.enter(&self.trial, self.size);
             let trial = &self.trial;
             self.arrived = self.goals.iter().all(|&(s, p)| trial[s as usize] == p);
             // contacts push what floats
@@ -208,7 +247,7 @@ impl<const D: usize> Gini<D> {
     pub(super) fn is_final(&self) -> bool {
         self.arrived
             && (self.contacts.is_none()
-                || self.moved <= self.options.settle
+                || self.moved.min(self.window.drift) <= self.options.settle
                 || self.options.settle == 0.0)
     }
 
