@@ -141,6 +141,7 @@ impl<const D: usize> Gini<D> {
 
         let clock = Stopwatch::start();
         let reached = self.polish(&mut step);
+        step.reached = reached;
         self.lead_pins(reached, step.accepted);
         let polished = step.polish.len() as u32;
         step.polish_milliseconds = clock.milliseconds() - self.trace_milliseconds();

@@ -33,8 +33,11 @@ pub struct GiniStep {
     pub polish: Vec<PolishStep>,
     /// How long they took, in milliseconds; they are part of the step's phase `evaluate`.
     pub polish_milliseconds: f64,
-    /// Did x move to x̂?
+    /// Did x move, to x̂ or a part of the way there?
     pub accepted: bool,
+    /// Did x move to x̂?
+    #[serde(default)]
+    pub reached: bool,
     /// The smallest signed measure of an element of x, relative to its rest measure.
     pub smallest_measure: f64,
     /// The least η of an element, and the η that elements begin with, relative to the rest measure.
