@@ -159,3 +159,28 @@ fn energies_and_landmarks_are_checked() {
     let error = with.map(|_| ()).expect_err("no landmarks").to_string();
     assert!(error.contains("landmarks"), "{error}");
 }
+
+#[test]
+fn pieces_are_not_in_each_others_way() {
+    let one = generate(Shape::SpiralRamp, 300);
+    let energy = |mesh: &SurfaceMesh| {
+        let p = run(mesh, &options(Method::GiniCm, Start::Harmonic));
+        is_bijective(&p);
+        p.solver().report().energy
+    };
+    let alone = energy(&one);
+    let mut three = one.clone();
+    for k in 1..3 {
+        let first = three.positions.len() as u32;
+        let shift = DVec3::X * 9.0 * f64::from(k);
+        let moved = one.positions.iter().map(|p| *p + shift);
+        three.positions.extend(moved);
+        let simplices = one.simplices.iter().map(|t| t.map(|v| v + first));
+        three.simplices.extend(simplices);
+    }
+    let together = energy(&three);
+    assert!(
+        together < 1.01 * alone,
+        "{alone} alone, {together} beside others"
+    );
+}

@@ -316,3 +316,45 @@ fn a_solid_that_passes_through_itself_comes_apart() {
     assert_eq!(report["outcome"]["intersections"], 0);
     assert!(report["flow"]["steps"].as_u64().unwrap() > 0);
 }
+
+#[test]
+fn newtons_method_goes_on_from_there() {
+    let folder = folder("untangle-minimize");
+    let energy = |name: &str| {
+        let report: serde_json::Value = serde_json::from_slice(&folder.read(name)).unwrap();
+        assert_eq!(report["status"], "converged");
+        let steps = report["iterations"].as_array().unwrap();
+        let last = steps[steps.len() - 1]["energy"].as_f64().unwrap();
+        (last, report["minimized_to"].as_f64())
+    };
+    let line = format!("{UNTANGLE} --energy symmetric-dirichlet -q");
+    folder
+        .foldfree(&format!("{line} --report first.json"))
+        .ends(0);
+    folder
+        .foldfree(&format!(
+            "{line} --minimize --tolerance 1e-9 --report both.json --out out.obj"
+        ))
+        .ends(0);
+    folder
+        .foldfree("check out.obj --rest grid.obj --global -q")
+        .ends(0);
+    let ((first, none), (both, tolerance)) = (energy("first.json"), energy("both.json"));
+    assert_eq!((none, tolerance), (None, Some(1e-9)));
+    // the grid itself is the minimum
+    assert!(
+        first > both + 1e-5 && (both - 1.0).abs() < 1e-6,
+        "{first}, {both}"
+    );
+    for (line, words) in [
+        ("--minimize", "minimize"),
+        (
+            "--energy symmetric-dirichlet --tolerance 1e-3",
+            "--minimize",
+        ),
+    ] {
+        folder
+            .foldfree(&format!("{UNTANGLE} {line}"))
+            .fails(&[words]);
+    }
+}

@@ -462,3 +462,25 @@ fn open_surfaces_are_refused() {
     assert!(error.to_string().contains("open"), "{error}");
     assert_eq!(x, before);
 }
+
+#[test]
+fn what_lies_on_one_point_opens() {
+    let mut wanted = bent_bar(2, 1.2, 0.7);
+    // the middle of one side of the bar, with the triangles between
+    let rest = &wanted.rest.positions;
+    let patch: Vec<usize> = (0..rest.len())
+        .filter(|&v| rest[v].z > 0.49 && rest[v].x.abs() < 1.1)
+        .collect();
+    assert!(patch.len() > 8);
+    let at = wanted.start[patch[0]];
+    patch.iter().for_each(|&v| wanted.start[v] = at);
+    let mut u = solid(&wanted, &[], Material::Arap).expect("comes apart");
+    let watch = Watch::<3>::new(wanted.rest.simplices.as_flattened(), &wanted.start);
+    watch.run(&mut u);
+    assert_eq!(
+        u.outcome().globally_injective,
+        Some(true),
+        "{:?}",
+        u.outcome()
+    );
+}

@@ -322,3 +322,67 @@ fn pins_are_checked() {
     let error = new(&GiniOptions::default()).move_pins(&[]);
     assert!(error.is_err(), "only with overlap");
 }
+
+/// A box of 4 × 4 × 4 cells; one tetrahedron inside of it, all of whose vertices are held, is turned inside out.
+fn turned_inside() -> (SolidMesh, Vec<DVec3>, Vec<u32>) {
+    let rest = cubes(&block([0; 3], [4; 3], 1, 0), |at, _| point(at, 1));
+    let is_inside = |v: &u32| {
+        let p = rest.positions[*v as usize];
+        p.min_element() > 0.0 && p.max_element() < 4.0
+    };
+    let tetrahedron = rest.simplices.iter().find(|t| t.iter().all(is_inside));
+    let pins = tetrahedron.expect("one inside").to_vec();
+    let mut start = rest.positions.clone();
+    start.swap(pins[0] as usize, pins[1] as usize);
+    (rest, start, pins)
+}
+
+#[test]
+fn pins_that_mend_what_they_hold_inside_out_are_enough() {
+    let (rest, start, pins) = turned_inside();
+    let held = Untangling::of_solid(&rest, &start, &pins, &[], Material::Arap, &options());
+    let mut held = held.expect("the boundary is free");
+    assert_eq!(held.solver().status(), Status::Stalled);
+    assert_eq!(held.outcome().hopeless.len(), 1);
+    let back: Vec<(u32, DVec3)> = pins
+        .iter()
+        .map(|&v| (v, rest.positions[v as usize]))
+        .collect();
+    held.move_pins(&back).expect("pins");
+    assert!(held.outcome().hopeless.is_empty());
+    run(&mut held);
+    assert_eq!(held.solver().status(), INJECTIVE, "{:?}", held.outcome());
+    // and the other way round it is known before the first step
+    let away: Vec<(u32, DVec3)> = pins.iter().map(|&v| (v, start[v as usize])).collect();
+    held.move_pins(&away).expect("pins");
+    assert_eq!(held.outcome().hopeless.len(), 1);
+    assert!(held.outcome().not_positive.is_empty());
+    run(&mut held);
+    assert_ne!(held.solver().status(), INJECTIVE);
+}
+
+#[test]
+fn a_body_inside_another_is_not_apart() {
+    let mut cells = block([0; 3], [3; 3], 1, 0);
+    cells.extend(block([1; 3], [2; 3], 1, 1));
+    // within one tetrahedron of the outer box, whose boundary it does not meet
+    let rest = cubes(&cells, |at, part| match part {
+        0 => point(at, 1),
+        _ => DVec3::new(1.7, 1.5, 1.2) + 0.02 * point(at, 1),
+    });
+    for settle in [0.0, 1e-3] {
+        let options = GiniOptions {
+            settle,
+            max_iterations: 3,
+            ..GiniOptions::overlap()
+        };
+        let mut u =
+            Untangling::of_solid(&rest, &rest.positions, &[], &[], Material::Arap, &options)
+                .expect("no facets meet");
+        assert_eq!(u.outcome().intersections, Some(0));
+        assert_eq!(u.outcome().globally_injective, Some(false));
+        assert_eq!(u.solver().status(), Status::Running);
+        run(&mut u);
+        assert_ne!(u.solver().status(), INJECTIVE);
+    }
+}

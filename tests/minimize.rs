@@ -4,14 +4,16 @@ mod overlap_problems;
 mod untangle_problems;
 
 use foldfree::certificate::Certificate;
-use foldfree::deformation::{Material, Untangling, UntanglingOptions};
+use foldfree::deformation::{Material, Target, Untangling, UntanglingOptions};
 use foldfree::gini::GiniOptions;
 use foldfree::mesh::{SolidMesh, SolidShape};
 use foldfree::newton::NewtonOptions;
 use foldfree::optim::{Criterion, Status};
 use foldfree::{collision, geometry::RestShape};
 use glam::{DVec2, DVec3};
-use overlap_problems::{Moves, interlocked_arms, interlocked_arms_in_the_plane};
+use overlap_problems::{
+    Moves, block, cubes, interlocked_arms, interlocked_arms_in_the_plane, point,
+};
 use untangle_problems::{Bend, Inside, solid};
 
 fn options(gini: GiniOptions) -> UntanglingOptions {
@@ -141,4 +143,79 @@ fn energies_whose_minima_fold_are_refused() {
             "{error}"
         );
     }
+}
+
+/// Two boxes, one above the other, that are to go where the other is.
+fn pressed(shift: DVec3) -> (SolidMesh, Vec<u32>, Vec<Target>) {
+    let mut cells = block([0, 0, 0], [3, 2, 1], 2, 0);
+    cells.extend(block([0, 0, 1], [3, 2, 2], 2, 1));
+    let rest = cubes(&cells, |at, part| {
+        point(at, 2) + DVec3::new(0.05, 0.08, 0.1) * f64::from(part) + shift
+    });
+    let ends: Vec<(u32, f64)> = (0..)
+        .zip(&rest.positions)
+        .filter_map(|(v, p)| match p.z - shift.z {
+            z if z < 0.01 => Some((v, 0.2)),
+            z if z > 2.05 => Some((v, -0.2)),
+            _ => None,
+        })
+        .collect();
+    let target = |&(vertex, up): &(u32, f64)| Target {
+        vertex,
+        position: rest.positions[vertex as usize] + up * DVec3::Z,
+    };
+    let targets = ends.iter().map(target).collect();
+    (rest, Vec::new(), targets)
+}
+
+#[test]
+fn what_presses_stalls_and_still_does_not_meet() {
+    for shift in [DVec3::ZERO, DVec3::new(3e4, -1e4, 2e4)] {
+        let (rest, pins, targets) = pressed(shift);
+        let options = options(GiniOptions {
+            settle: 0.1,
+            target_stiffness: 1e-2,
+            ..GiniOptions::overlap()
+        });
+        let material = Material::NeoHookean {
+            young: 1.0,
+            poisson: 0.4,
+        };
+        let start = &rest.positions;
+        let mut u =
+            Untangling::of_solid(&rest, start, &pins, &targets, material, options).expect("apart");
+        let energies = run(&mut u, |u| {
+            let outcome = u.outcome();
+            assert_eq!(outcome.globally_injective, Some(true), "{outcome:?}");
+        });
+        assert!(energies.len() > 1, "{:?}", u.solver().report());
+        let report = u.solver().report();
+        assert_eq!(report.status, Status::Stalled, "{report:?}");
+        assert!(report.gradient_norm > 0.0);
+        assert!(report.gini.is_none() && u.trace().is_empty() && u.quadratic_trace().is_empty());
+    }
+}
+
+#[test]
+fn pins_that_cannot_be_moved_change_nothing() {
+    let problem = interlocked_arms(1);
+    let (rest, start, pins) = (&problem.rest, &problem.start, &problem.pins);
+    let material = Material::StableNeoHookean {
+        young: 1.0,
+        poisson: 0.4,
+    };
+    let mut u =
+        Untangling::of_solid(rest, start, pins, &[], material, options(settled())).expect("apart");
+    u.move_pins(&problem.moves[0]).expect("pins");
+    run(&mut u, |_| {});
+    let before = (u.positions(), u.solver().report().clone());
+    let free = (0..).find(|v| !pins.contains(v)).expect("a free vertex");
+    let error = u.move_pins(&[(pins[0], DVec3::ZERO), (free, DVec3::ZERO)]);
+    assert!(error.is_err());
+    assert_eq!(before, (u.positions(), u.solver().report().clone()));
+    // the clock goes on from there
+    u.move_pins(&[(pins[0], start[pins[0] as usize])])
+        .expect("a pin");
+    assert!(u.solver().report().seconds >= before.1.seconds);
+    assert!((u.solver().report().energy / before.1.energy - 1.0).abs() < 1e-6);
 }

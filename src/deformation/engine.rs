@@ -2,7 +2,7 @@
 
 use super::Material;
 use crate::energy::{Arap, Dirichlet, Energy, NeoHookean, StableNeoHookean, SymmetricDirichlet};
-use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome};
+use crate::gini::{Gini, GiniOptions, GiniProblem, Outcome, TraceState};
 use crate::newton::{GiniThenNewton, NewtonOptions};
 use crate::optim::{BuildError, Solver};
 use crate::space::{Plane, Solid, Space};
@@ -73,6 +73,14 @@ impl<const D: usize> Engine<D> {
         match self {
             Self::Gini(gini) => gini,
             Self::Then(both) => both.first(),
+        }
+    }
+
+    /// The states of the quadratic problem, then the polisher's, in the newest step: none if it was Newton's.
+    pub fn traces(&self) -> [&[TraceState]; 2] {
+        match self.solver().report().gini {
+            Some(_) => [self.gini().quadratic_trace(), self.gini().trace()],
+            None => [&[]; 2],
         }
     }
 

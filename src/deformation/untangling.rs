@@ -194,24 +194,26 @@ impl Untangling {
         }
     }
 
-    /// x̂ of one of them, one position a vertex.
+    /// x̄ or x̂ of one of them, one position a vertex.
     pub fn trace_positions(&self, state: &TraceState) -> Vec<DVec3> {
         self.in_space(&state.positions)
     }
 
-    /// The polisher's states in the newest step; see [`crate::gini::Gini::trace`].
+    /// The polisher's states in the newest step, if it was GINI's; see [`crate::gini::Gini::trace`].
     pub fn trace(&self) -> &[TraceState] {
-        match &self.solver {
-            Body::Plane(solver) => solver.gini().trace(),
-            Body::Solid(solver) => solver.gini().trace(),
-        }
+        self.traces()[1]
     }
 
-    /// The states of the quadratic problem in the newest step; see [`crate::gini::Gini::quadratic_trace`].
+    /// The states of the quadratic problem in the newest step, if it was GINI's; see
+    /// [`crate::gini::Gini::quadratic_trace`].
     pub fn quadratic_trace(&self) -> &[TraceState] {
+        self.traces()[0]
+    }
+
+    fn traces(&self) -> [&[TraceState]; 2] {
         match &self.solver {
-            Body::Plane(solver) => solver.gini().quadratic_trace(),
-            Body::Solid(solver) => solver.gini().quadratic_trace(),
+            Body::Plane(solver) => solver.traces(),
+            Body::Solid(solver) => solver.traces(),
         }
     }
 

@@ -24,18 +24,18 @@ use surface::Surface;
 pub struct Flowed {
     /// Steps that were taken; 0 where nothing met.
     pub steps: usize,
-    /// Pairs of facets that meet, before the first step and after each; the last is 0.
+    /// Pairs of facets that meet, before the first step and after each, counted up to 2²⁰; the last is 0.
     pub pairs: Vec<usize>,
 }
 
 /// Steps after which it gives up: long before, what comes apart at all is round.
 const MOST_STEPS: usize = 100;
 
-/// Pairs that are counted; where there are more, all parts flow.
+/// Pairs that are counted, at most; where there are more, all parts flow.
 const MOST_PAIRS: usize = 1 << 20;
 
 /// Moves the vertices of the boundary until no facets meet, by exact predicates. `rest` and `x` have one position a
-/// vertex; the boundary is oriented as at `rest`.
+/// vertex; the boundary is oriented as at `rest`. After an error x is where the flow has come to.
 ///
 /// # Errors
 /// `InvalidOption`: `start` for a boundary that is open, has no extent, or is not finite; `flow` for one that is, after
@@ -315,7 +315,7 @@ fn check_sides<const D: usize>(
         if (winding - expected).abs() > 0.5 {
             let what = match part.is_outer {
                 true => format!("{after}the body of vertex {vertex} is inside another"),
-                false => format!("{after}the cavity of vertex {vertex} is not inside its body"),
+                false => format!("{after}the cavity of vertex {vertex} is not inside a body"),
             };
             return wrong("flow", what);
         }

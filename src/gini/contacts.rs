@@ -173,6 +173,23 @@ impl<const D: usize> Contacts<D> {
         hits.iter().map(|hit| hit.0.vertices(boundary)).collect()
     }
 
+    /// The largest of a few lengths between this and η that no two parts are nearer to each other than.
+    pub fn room(&mut self, x: &[[f64; D]], movable: &[bool]) -> f64 {
+        let least = self.gap();
+        let mut room = least / GAP;
+        while room > 2.0 * least {
+            let boundary = &self.boundary;
+            let near = self.broad.collisions(boundary, x, x, room, |c| {
+                c.vertices(boundary).iter().any(|&v| movable[v as usize])
+            });
+            if near.is_empty() {
+                return room;
+            }
+            room *= 0.25;
+        }
+        least
+    }
+
     /// How near two parts may come on the way.
     fn gap(&self) -> f64 {
         let least = self.relative.iter().copied().fold(1.0, f64::min);

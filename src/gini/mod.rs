@@ -47,6 +47,7 @@ mod zones;
 
 pub use constraint::{Constraint, Key, Law};
 pub use options::GiniOptions;
+pub(crate) use outcome::MOST_PAIRS;
 pub use outcome::Outcome;
 pub use problem::GiniProblem;
 pub use solver::Gini;

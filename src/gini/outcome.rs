@@ -4,8 +4,8 @@ use super::problem::not_positive;
 use super::solver::Gini;
 use crate::optim::Solver;
 
-/// Pairs of facets that meet are counted up to here.
-const MOST_PAIRS: usize = 1000;
+/// Pairs of facets that meet are counted, or listed, up to here.
+pub(crate) const MOST_PAIRS: usize = 1000;
 
 /// How a run ended, or stands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -71,10 +71,7 @@ impl<const D: usize> Gini<D> {
     /// # Panics
     /// If there are fewer positions than vertices.
     pub fn outcome_of(&self, positions: &[f64]) -> Outcome {
-        let mut x = vec![[0.0; D]; self.slot.len()];
-        for (position, &slot) in positions.as_chunks::<D>().0.iter().zip(&self.slot) {
-            x[slot as usize] = *position;
-        }
+        let x = self.by_slot(positions);
         let mut values = vec![0.0; self.elements.len()];
         self.elements.values(&x, &mut values);
         let not_positive = not_positive(D, &self.corners, positions);

@@ -20,7 +20,7 @@ pub struct GiniProblem<'a> {
     /// Start, vertices × dimension, interleaved. May be inverted or collapsed.
     pub start: &'a [f64],
     /// Where x̄ begins, if that is not the start: the primary solver may begin folded, or with a boundary that meets
-    /// itself, what x must not where overlap counts. As long as the start.
+    /// itself, what x must not where overlap counts. As long as the start; of pinned vertices it is not asked.
     pub primary: Option<&'a [f64]>,
     /// Vertices held where they start. There may be none: a component without pin or spring keeps its centroid.
     pub pins: &'a [u32],
@@ -91,7 +91,7 @@ impl GiniProblem<'_> {
     }
 
     /// The connected components that nothing holds, each by its vertices in ascending order.
-    pub(super) fn floating(&self, dimension: usize) -> Vec<Vec<u32>> {
+    pub(crate) fn floating(&self, dimension: usize) -> Vec<Vec<u32>> {
         let n = self.start.len() / dimension;
         let mut sets = DisjointSets::new(n);
         let mut used = vec![false; n];
@@ -125,11 +125,11 @@ impl GiniProblem<'_> {
 }
 
 /// The signed measure of the image, if pins determine it: all vertices of the boundary are held. It is the sum over
-/// the elements, whatever the inside is like. With it the largest rounding error it may have.
+/// the elements (D + 1 `corners` each), whatever the inside is like. With it the largest rounding error it may have.
 pub(super) fn held_measure<const D: usize>(
-    rest: &RestShape,
+    corners: &[u32],
     is_held: &[bool],
-    start: &[f64],
+    points: &[[f64; D]],
 ) -> Option<(f64, f64)> {
     let held = is_held.iter().filter(|&&held| held).count();
     if held <= D {
@@ -137,8 +137,7 @@ pub(super) fn held_measure<const D: usize>(
     }
     // facets with a vertex that moves, as sorted vertices: all of them must have two elements
     let mut facets: Vec<[u32; 3]> = Vec::new();
-    for e in 0..rest.len() {
-        let simplex = rest.simplex(e);
+    for simplex in corners.chunks_exact(D + 1) {
         for opposite in 0..=D {
             let mut facet = [u32::MAX; 3];
             let others = (0..=D).filter(|&v| v != opposite);
@@ -155,10 +154,8 @@ pub(super) fn held_measure<const D: usize>(
     if facets.chunk_by(|a, b| a == b).any(|same| same.len() != 2) {
         return None;
     }
-    let points = start.as_chunks::<D>().0;
     let (mut sum, mut size) = (0.0, 0.0);
-    for e in 0..rest.len() {
-        let simplex = rest.simplex(e);
+    for simplex in corners.chunks_exact(D + 1) {
         let at = |i: usize| points[simplex[i.min(D)] as usize];
         let measure = signed_measure(&[at(0), at(1), at(2), at(3)]);
         sum += measure;

@@ -94,9 +94,6 @@ const MOST_IDLE: usize = 15;
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
 
-/// Where overlap counts: steps in a row that x has not moved in after which x̄ begins anew, with a shorter stride of pins.
-const PATIENCE: usize = 2;
-
 /// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
 const LEAST_WITH_CONTACTS: f64 = 1e-3;
 
@@ -273,7 +270,7 @@ impl<const D: usize> Gini<D> {
         }
         self.back_off();
         self.failures += 1;
-        step.accepted = self.advance();
+        step.accepted = self.advance(step);
         false
     }
 
@@ -356,8 +353,7 @@ impl<const D: usize> Gini<D> {
 
     /// No element of the positions inverted or degenerate, exactly.
     fn is_injective(&self) -> bool {
-        self.hopeless.is_empty()
-            && self.values.iter().all(|&c| c > 0.0)
+        self.values.iter().all(|&c| c > 0.0)
             && not_positive(D, &self.corners, &self.positions).is_empty()
     }
 

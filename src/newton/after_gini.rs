@@ -17,6 +17,8 @@ use core::marker::PhantomData;
 /// Where an energy is least folded (ARAP), elements end as flat as numbers allow: this is for energies that mind.
 ///
 /// Nothing pushes bodies in contact apart: Newton's method stalls where the way to less energy leads through a contact.
+/// After each of its steps what GINI has reached is checked again, exactly; a step that does not pass is taken back, and
+/// the run has stalled.
 pub struct GiniThenNewton<const D: usize> {
     first: Gini<D>,
     second: Newton,
@@ -62,21 +64,25 @@ impl<const D: usize> GiniThenNewton<D> {
     ) -> Result<Self, BuildError> {
         let overlap = first.overlap;
         let stiffness = first.target_stiffness;
-        let first = Gini::new::<S, E>(problem, energy, first)?;
+        let mut first = Gini::new::<S, E>(problem, energy, first)?;
         let external = External {
             springs: problem.absolute_springs::<S, E>(&energy, stiffness),
             ..Default::default()
         };
+        // of what floats no energy knows where it is
+        let floating = problem.floating(D);
+        let mut pins = problem.pins.to_vec();
+        pins.extend(floating.iter().map(|component| component[0]));
         let same = Problem {
             rest: problem.rest,
             start: problem.start,
-            pins: problem.pins,
+            pins: &pins,
             external: (!external.springs.is_empty()).then_some(&external),
         };
         let mut second = Newton::with_curvature::<S, E>(same, energy, curvature, 0.0, second)?;
         second.keep_positive();
         if overlap {
-            second.keep_apart(problem.rest)?;
+            second.keep_apart(problem.rest, first.gap())?;
         }
         let mut this = Self {
             report: first.report().clone(),
@@ -101,10 +107,12 @@ impl<const D: usize> GiniThenNewton<D> {
     /// Has pinned vertices move elsewhere: GINI goes on from where the map is.
     ///
     /// # Errors
-    /// As [`Gini::move_pins`].
+    /// As [`Gini::move_pins`]; nothing has changed then.
     pub fn move_pins(&mut self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
+        self.first.check_pins(pins)?;
         if self.switched {
-            self.first.restart(self.second.positions());
+            let seconds = self.report.seconds;
+            self.first.restart(self.second.positions(), seconds);
         }
         self.first.move_pins(pins)?;
         self.switched = false;
@@ -124,7 +132,12 @@ impl<const D: usize> GiniThenNewton<D> {
             return;
         }
         self.second.restart(self.first.positions(), &self.report);
+        self.second.count_from_here();
+        let gap = self.first.gap();
+        self.second.set_gap(gap);
         if self.second.is_broken() || self.second.report().inverted > 0 {
+            // flat to rounding: as injective as GINI left it, and that is all
+            self.report.status = Status::Stalled;
             return;
         }
         self.switched = true;
@@ -141,7 +154,16 @@ impl<const D: usize> Solver for GiniThenNewton<D> {
     fn step(&mut self) -> Result<StepReport, SolveError> {
         if self.switched {
             let switched_at = self.report.switched_at;
+            let before = self.second.positions().to_vec();
             self.report = self.second.step()?;
+            if !self.first.proves(self.second.positions()) {
+                self.second.restart(&before, &self.report);
+                self.report = StepReport {
+                    status: Status::Stalled,
+                    phases: core::mem::take(&mut self.report.phases),
+                    ..self.second.report().clone()
+                };
+            }
             self.report.switched_at = switched_at;
         } else {
             self.report = self.first.step()?;

@@ -255,6 +255,11 @@ impl Newton {
         self.take_over(report);
     }
 
+    /// The most iterations count from here on.
+    pub(super) fn count_from_here(&mut self) {
+        self.counted_from = self.report.iteration;
+    }
+
     /// Continues another solver's count from where it stands.
     pub(super) fn take_over(&mut self, report: &StepReport) {
         self.report.iteration = report.iteration;
@@ -347,7 +352,8 @@ impl Newton {
                 let change = before - self.energy;
                 self.near = change < NEAR * (self.energy.abs() + floor);
                 let near = decrement < 10.0 * tolerance * (self.energy.abs() + floor);
-                let may = near || found.by_rounding;
+                // in contact steps get as short as numbers allow, far from the minimum
+                let may = near || (found.by_rounding && !found.blocked);
                 let most = self.counted_from + self.options.max_iterations;
                 let met = self.yardstick.criterion(
                     change,
@@ -356,7 +362,10 @@ impl Newton {
                     tolerance,
                 );
                 self.report.conclude(met.filter(|_| may), most);
-                let stuck = found.by_rounding && self.energy == before;
+                let stuck = match found.blocked {
+                    true => met.is_some() && !may,
+                    false => found.by_rounding && self.energy == before,
+                };
                 if stuck && self.report.status == Status::Running {
                     self.report.status = Status::Stalled;
                 }

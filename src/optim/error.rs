@@ -25,7 +25,7 @@ pub enum BuildError {
     /// The boundary of the start meets itself. Facets by their vertices; of edges in the plane the second is given
     /// twice. At most 1000 pairs.
     #[error(
-        "the boundary of the start meets itself: {} pairs of facets, the first {:?} and {:?}; with the option flow (--flow) it is first parted by mean curvature flow", pairs.len(), pairs[0][0], pairs[0][1]
+        "the boundary of the start meets itself: {}{} pairs of facets, the first {:?} and {:?}; with the option flow (--flow) it is first parted by mean curvature flow", if pairs.len() < crate::gini::MOST_PAIRS { "" } else { "at least " }, pairs.len(), pairs[0][0], pairs[0][1]
     )]
     IntersectingStart { pairs: Vec<[[u32; 3]; 2]> },
     /// The boundary of the start still meets itself after mean curvature flow. Facets by their vertices, as above.

@@ -6,7 +6,7 @@ use super::starts::start;
 use super::{EnergyKind, Method, ParameterizationOptions, Start};
 use crate::energy::{Arap, SymmetricDirichlet};
 use crate::geometry::RestShape;
-use crate::gini::{Gini, GiniOptions, GiniProblem};
+use crate::gini::{Gini, GiniOptions, GiniProblem, MOST_PAIRS};
 use crate::newton::{GiniThenNewton, NewtonOptions};
 use crate::optim::{BuildError, Solver};
 use crate::space::Plane;
@@ -30,7 +30,8 @@ pub(super) fn bijective(
     scale: f64,
 ) -> Result<(Box<dyn Solver>, Option<String>), BuildError> {
     let charts: Vec<Range<u32>> = atlas.charts.iter().map(|c| c.vertices.clone()).collect();
-    lay_out(&mut map, &charts);
+    let room = room(atlas, scale);
+    lay_out(&mut map, &charts, room);
     let first = GiniOptions {
         max_iterations: options.max_iterations,
         settle: match options.method {
@@ -69,16 +70,46 @@ pub(super) fn bijective(
     match build(&positions, None) {
         Err(BuildError::IntersectingStart { pairs }) => {
             let (mut circle, _) = start(Start::Tutte, options.seed, atlas, rest, scale)?;
-            lay_out(&mut circle, &charts);
+            lay_out(&mut circle, &charts, room);
+            let more = if pairs.len() < MOST_PAIRS {
+                ""
+            } else {
+                " or more"
+            };
             let note = format!(
-                "the boundary of the start meets itself (pairs of edges: {}): the map begins in a circle instead, and the start is where the primary solver begins",
+                "the boundary of the start meets itself (pairs of edges: {}{more}): the map begins in a circle instead, and the start is where the primary solver begins",
                 pairs.len()
             );
-            let solver = build(&interleave(&circle), Some(&positions))?;
+            let solver = match build(&interleave(&circle), Some(&positions)) {
+                // there is no flow here
+                Err(BuildError::IntersectingStart { pairs }) => {
+                    return Err(BuildError::InvalidOption {
+                        option: "start",
+                        what: format!(
+                            "meets itself, and so does a circle in its place (pairs of edges: {})",
+                            pairs.len()
+                        ),
+                    });
+                }
+                solver => solver?,
+            };
             Ok((solver, Some(note)))
         }
         solver => Ok((solver?, None)),
     }
+}
+
+/// What charts need between them, so that none is in another's way: a map that keeps lengths is nowhere wider than half
+/// its outline.
+fn room(atlas: &Atlas, scale: f64) -> f64 {
+    let length = |outline: &Vec<u32>| {
+        let next = outline.iter().cycle().skip(1);
+        let at = |&v: &u32| atlas.mesh.positions[v as usize];
+        let edges = outline.iter().zip(next);
+        edges.map(|(a, b)| at(a).distance(at(b))).sum::<f64>()
+    };
+    let lengths = atlas.charts.iter().map(|chart| length(&chart.outline));
+    0.5 * scale * lengths.fold(0.0, f64::max)
 }
 
 fn interleave(map: &[DVec2]) -> Vec<f64> {

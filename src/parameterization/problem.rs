@@ -234,7 +234,7 @@ impl Parameterization {
         let unit = self.scale.recip();
         let positions = self.solver.positions().as_chunks::<2>().0.iter();
         let mut map: Vec<DVec2> = positions.map(|&[x, y]| unit * DVec2::new(x, y)).collect();
-        lay_out(&mut map, &self.charts);
+        lay_out(&mut map, &self.charts, 0.0);
         map
     }
     /// The start that was used (what `Automatic` became).

@@ -6,9 +6,9 @@ use glam::DVec2;
 /// Between charts, relative to the side of a square of all their boxes.
 const GAP: f64 = 0.02;
 
-/// Moves charts apart, on shelves of about the width of a square that holds them: no two boxes meet. The first
-/// stays where it is, and one alone, too.
-pub(super) fn lay_out(map: &mut [DVec2], charts: &[Range<u32>]) {
+/// Moves charts apart, on shelves of about the width of a square that holds them: no two boxes meet, or come nearer than
+/// `room` to each other. The first stays where it is, and one alone, too.
+pub(super) fn lay_out(map: &mut [DVec2], charts: &[Range<u32>], room: f64) {
     if charts.len() < 2 {
         return;
     }
@@ -26,8 +26,8 @@ pub(super) fn lay_out(map: &mut [DVec2], charts: &[Range<u32>]) {
     let sizes = boxes.iter().map(|(low, high)| *high - *low);
     let area: f64 = sizes.clone().map(|s| s.x * s.y).sum();
     let widest = sizes.map(|s| s.x).fold(0.0, f64::max);
-    let gap = GAP * area.sqrt();
-    let width = widest.max(1.2 * area.sqrt());
+    let gap = (GAP * area.sqrt()).max(room);
+    let width = widest.max(1.2 * (area + (charts.len() as f64) * room * room).sqrt());
     let origin = boxes[0].0;
     let (mut at, mut shelf) = (origin, 0.0f64);
     for (chart, (low, high)) in charts.iter().zip(boxes) {

@@ -61,7 +61,7 @@ pub struct Untangle {
     #[arg(long)]
     pub minimize: bool,
     /// With --minimize: stop when the energy changes by less than this part in a step.
-    #[arg(long, value_name = "T", default_value_t = 1e-6, value_parser = positive)]
+    #[arg(long, value_name = "T", requires = "minimize", default_value_t = 1e-6, value_parser = positive)]
     pub tolerance: f64,
     /// How hard targets pull, relative to how hard the body holds on to the vertex it holds on to most: 1, with
     /// --overlap 1e-5.
@@ -76,7 +76,7 @@ pub struct Untangle {
     /// Poisson's ratio (the same).
     #[arg(long, value_name = "N", default_value_t = Material::POISSON)]
     pub poisson: f64,
-    /// Stop after this many steps; 0: the start is the result.
+    /// Stop after this many steps, and with --minimize after as many of Newton's method; 0: the start is the result.
     #[arg(long, value_name = "N", default_value_t = GiniOptions::default().max_iterations)]
     pub iterations: usize,
     /// Threads; 0: as many as the machine has.

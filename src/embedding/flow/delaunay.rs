@@ -96,12 +96,13 @@ impl Intrinsic {
         [h, next(h), next(next(h))].map(|h| self.halves[h as usize].length)
     }
 
-    /// Of the angle opposite to this edge.
+    /// Of the angle opposite to this edge; a triangle on one point is as good as any, and taken for an equilateral one, so
+    /// that it can open.
     fn cotangent(&self, h: u32) -> f64 {
         let [a, b, c] = self.lengths(h);
         let longest = a.max(b).max(c).powi(2);
         if !(longest > 0.0) {
-            return 0.0;
+            return 1.0 / 3f64.sqrt();
         }
         // b² − a² without the loss of two squares
         let twice_dot = (b - a) * (b + a) + c * c;

@@ -8,6 +8,7 @@ use crate::geometry::{Elimination, RestShape};
 use crate::gini::admm::{Admm, Body};
 use crate::gini::contacts::Contacts;
 use crate::gini::elements::Elements;
+use crate::gini::outcome::MOST_PAIRS;
 use crate::gini::problem::{held_measure, not_positive};
 use crate::gini::set::ConstraintSet;
 use crate::gini::zones::Zones;
@@ -31,7 +32,9 @@ impl<const D: usize> Gini<D> {
     /// Checks the problem, analyses and factors the Laplacian, and looks at the start.
     ///
     /// # Errors
-    /// Lengths that do not fit, options out of range, a start that is not finite, pins that leave nothing free.
+    /// Lengths that do not fit, options out of range, a start that is not finite, pins that leave nothing free. With
+    /// overlap `NonManifoldFacet`, and `IntersectingStart` for a boundary that meets itself. `TooLarge` or
+    /// `NotPositiveDefinite` for what the linear system cannot hold.
     ///
     /// # Panics
     /// If the space does not have D dimensions.
@@ -92,7 +95,11 @@ impl<const D: usize> Gini<D> {
             }
         }
         let held: Vec<bool> = movable.iter().map(|m| !m).collect();
-        let image = held_measure::<D>(problem.rest, &is_held, problem.start);
+        let image = held_measure(
+            &problem.rest.vertices,
+            &is_held,
+            problem.start.as_chunks::<D>().0,
+        );
         let at_rest: f64 = rest.measure.iter().sum();
         // where pins leave less room than there is at rest, every η is less from the beginning
         let room = image.map_or(1.0, |(image, _)| (image / at_rest).clamp(1e-6, 1.0));
@@ -150,7 +157,7 @@ impl<const D: usize> Gini<D> {
             },
             positions: problem.start.to_vec(),
             hopeless: Vec::new(),
-            hopeless_measure: image.filter(|(image, error)| image <= error).map(|i| i.0),
+            hopeless_measure: None,
             first_offset,
             begins_anew: true,
             idle: 0,
@@ -169,15 +176,9 @@ impl<const D: usize> Gini<D> {
 
     /// The status of the start: there already, or out of reach of any map with these pins.
     fn judge(&mut self) {
-        let inverted = not_positive(D, &self.corners, &self.positions);
-        let mut is_movable = vec![true; self.order.len()];
-        for (place, &e) in self.order.iter().enumerate() {
-            is_movable[e as usize] = self.elements.movable[place];
-        }
-        let hopeless = inverted.iter().filter(|&&e| !is_movable[e as usize]);
-        self.hopeless = hopeless.copied().collect();
+        self.foresee();
         self.report.status = match () {
-            _ if inverted.is_empty() && self.is_final() => Status::Converged(Criterion::Injective),
+            _ if self.is_done() => Status::Converged(Criterion::Injective),
             _ if !self.hopeless.is_empty() || self.hopeless_measure.is_some() => Status::Stalled,
             _ if self.options.max_iterations == 0 => Status::MaxIterations,
             () => Status::Running,
@@ -185,8 +186,28 @@ impl<const D: usize> Gini<D> {
     }
 }
 
-/// Facets of the start that meet and are named in the error.
-const LISTED: usize = 1000;
+impl<const D: usize> Gini<D> {
+    /// What of the map is decided by where pins are to be, and is not injective.
+    pub(super) fn foresee(&mut self) {
+        let is_held: Vec<bool> = self
+            .slot
+            .iter()
+            .map(|&s| !self.movable[s as usize])
+            .collect();
+        let mut points = self.x.clone();
+        for &(slot, goal) in &self.goals {
+            points[slot as usize] = goal;
+        }
+        let points: Vec<[f64; D]> = self.slot.iter().map(|&s| points[s as usize]).collect();
+        let simplices = self.corners.chunks_exact(D + 1).zip(0..);
+        let held = simplices.filter(|(s, _)| s.iter().all(|&v| is_held[v as usize]));
+        let (corners, elements): (Vec<&[u32]>, Vec<u32>) = held.unzip();
+        let inverted = not_positive(D, &corners.concat(), points.as_flattened());
+        self.hopeless = inverted.iter().map(|&k| elements[k as usize]).collect();
+        let image = held_measure(&self.corners, &is_held, &points);
+        self.hopeless_measure = image.filter(|(image, error)| image <= error).map(|i| i.0);
+    }
+}
 
 /// The boundary and its contacts; an error if it meets itself at the start.
 fn build_contacts<const D: usize>(
@@ -206,7 +227,7 @@ fn build_contacts<const D: usize>(
     let root = |measure: f64| measure.powf(1.0 / D as f64);
     let size = root(measure).min(100.0 * root(measure / rest.len() as f64));
     let mut contacts = Contacts::new(boundary, elements, x.len(), options.contact_offset * size);
-    let meeting = contacts.intersections(x, LISTED);
+    let meeting = contacts.intersections(x, MOST_PAIRS);
     if !meeting.is_empty() {
         let facet = |f: u32| {
             let facet = contacts.facets()[f as usize];

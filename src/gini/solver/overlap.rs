@@ -1,13 +1,19 @@
 //! What is different where the boundary must not pass through itself.
 
 use super::{Gini, build};
+use crate::gini::contacts::Contacts;
+use crate::gini::problem::not_positive;
 use crate::optim::{BuildError, GiniStep, Status, Stopwatch};
 
 /// How often ways are halved until they are free, before vertices stay where they are, and how often that is tried.
 const HALVINGS: usize = 6;
 const MOST_RETREATS: usize = 30;
 
-/// After so many steps in a row of which only such a part was taken x̄ begins anew.
+/// Failures in a row after which x̄ begins anew, with a shorter stride of pins, where x has not moved;
+const PATIENCE: usize = 2;
+
+/// where x has moved a part of its way, pins of x̄ go on from there, but not after every so many failures: x̄ is left to
+/// itself, or begins anew if the other number divides theirs, too.
 const MOST_ADVANCES: usize = 3;
 
 /// Contacts make vertices jitter where they have settled; over so many steps they go nowhere.
@@ -57,9 +63,37 @@ fn way<const D: usize>(from: &[[f64; D]], to: &[[f64; D]]) -> f64 {
 }
 
 impl<const D: usize> Gini<D> {
+    /// How near parts of the boundary may come to each other from x on, as a length, so that this solver can go on from
+    /// there; 0 where overlap does not count.
+    pub(crate) fn gap(&mut self) -> f64 {
+        let (x, movable) = (&self.x, &self.movable);
+        self.contacts
+            .as_mut()
+            .map_or(0.0, |contacts| contacts.room(x, movable))
+    }
+
+    /// Is no element inverted or flat there, and does the boundary not meet itself where overlap counts? Exact.
+    pub(crate) fn proves(&self, positions: &[f64]) -> bool {
+        let is_clear = |contacts: &Contacts<D>| {
+            let x = self.by_slot(positions);
+            contacts.meeting(&x, 1).is_empty()
+        };
+        not_positive(D, &self.corners, positions).is_empty()
+            && self.contacts.as_ref().is_none_or(is_clear)
+    }
+
+    /// Positions by vertex as positions by slot.
+    pub(crate) fn by_slot(&self, positions: &[f64]) -> Vec<[f64; D]> {
+        let mut x = vec![[0.0; D]; self.slot.len()];
+        for (position, &slot) in positions.as_chunks::<D>().0.iter().zip(&self.slot) {
+            x[slot as usize] = *position;
+        }
+        x
+    }
+
     /// Goes on from these positions, vertices × dimension, which have to be as injective as x is; another solver found
-    /// them.
-    pub(crate) fn restart(&mut self, positions: &[f64]) {
+    /// them, after so many seconds in all.
+    pub(crate) fn restart(&mut self, positions: &[f64], seconds: f64) {
         for (position, &slot) in positions.as_chunks::<D>().0.iter().zip(&self.slot) {
             self.trial[slot as usize] = *position;
         }
@@ -67,15 +101,12 @@ impl<const D: usize> Gini<D> {
         self.accept(self.count_inverted());
         self.publish();
         self.begin_anew();
+        self.look();
+        self.report.seconds = seconds;
     }
 
-    /// Has pinned vertices move elsewhere, hard: x̄ has them there at once, x stays where it is until the way there is
-    /// free. The run goes on, with all its steps anew.
-    ///
-    /// # Errors
-    /// `InvalidOption` without [`crate::gini::GiniOptions::overlap`], for a vertex that is not pinned, and for a
-    /// position that is not finite.
-    pub fn move_pins(&mut self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
+    /// The errors of [`Self::move_pins`].
+    pub(crate) fn check_pins(&self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
         let wrong = |what: String| {
             Err(BuildError::InvalidOption {
                 option: "pins",
@@ -94,6 +125,17 @@ impl<const D: usize> Gini<D> {
                 return wrong(format!("vertex {vertex} would not be finite"));
             }
         }
+        Ok(())
+    }
+
+    /// Has pinned vertices move elsewhere, hard: x̄ has them there at once, x stays where it is until the way there is
+    /// free. The run goes on, with all its steps anew.
+    ///
+    /// # Errors
+    /// `InvalidOption` without [`crate::gini::GiniOptions::overlap`], for a vertex that is not pinned, and for a
+    /// position that is not finite; nothing has changed then.
+    pub fn move_pins(&mut self, pins: &[(u32, [f64; D])]) -> Result<(), BuildError> {
+        self.check_pins(pins)?;
         for &(vertex, position) in pins {
             let slot = self.slot[vertex as usize];
             if let Ok(place) = self.goals.binary_search_by_key(&slot, |goal| goal.0) {
@@ -104,6 +146,7 @@ impl<const D: usize> Gini<D> {
         self.failures = 0;
         self.place_pins();
         self.arrived = self.goals.iter().all(|&(s, p)| self.x[s as usize] == p);
+        self.foresee();
         self.moved = f64::INFINITY;
         self.window = Window::new(&self.x);
         self.begins_anew = true;
@@ -140,9 +183,11 @@ impl<const D: usize> Gini<D> {
             if !self.arrived {
                 self.place_pins();
             }
-        } else if advanced && !self.failures.is_multiple_of(MOST_ADVANCES) {
+            return;
+        }
+        if advanced && !self.failures.is_multiple_of(MOST_ADVANCES) {
             self.place_pins();
-        } else if self.failures.is_multiple_of(super::PATIENCE) {
+        } else if self.failures.is_multiple_of(PATIENCE) {
             self.stride = (0.5 * self.stride).max(LEAST_STRIDE);
             self.begin_anew();
         }
@@ -163,7 +208,7 @@ impl<const D: usize> Gini<D> {
     /// Where the polisher has failed: vertices of pairs that still collide on the way from x to x̂, and of elements that
     /// would get worse, go less and less of their way, all others the whole of it, until the way is free. Returns whether
     /// any goes far enough to be worth it.
-    pub(super) fn advance(&mut self) -> bool {
+    pub(super) fn advance(&mut self, step: &mut GiniStep) -> bool {
         if self.contacts.is_none() {
             return false;
         }
@@ -173,8 +218,10 @@ impl<const D: usize> Gini<D> {
             self.elements.values(&self.trial, &mut self.trial_values);
             let mut slots: Vec<u32> = Vec::new();
             if let Some(contacts) = &mut self.contacts {
+                let clock = Stopwatch::start();
                 let pairs = contacts.colliding(&self.x, &self.trial, &self.movable);
                 slots.extend(pairs.as_flattened());
+                step.collision_milliseconds += clock.milliseconds();
             }
             let values = self.trial_values.iter().zip(&self.values);
             for (e, (&new, &old)) in values.enumerate() {

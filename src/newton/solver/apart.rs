@@ -5,50 +5,92 @@ use crate::collision::{Boundary, BroadPhase};
 use crate::geometry::RestShape;
 use crate::optim::BuildError;
 
-/// How far a step may go before the boundary would meet itself.
+/// What keeps the boundary from passing through itself.
 pub(super) trait Apart: Send {
-    /// A step along `direction` from `x` (both by slot, interleaved) that is free, at most `longest`; otherwise
-    /// `fraction` of the way to the first contact.
-    fn bound(&mut self, x: &[f64], direction: &[f64], fraction: f64, longest: f64) -> f64;
+    /// Of the step `longest` along `direction` from `x` (both by slot, interleaved; below `free` slots move) the part
+    /// that is free; up to `fraction` of the way to the first contact, if there is one.
+    fn free_part(
+        &mut self,
+        x: &[f64],
+        direction: &[f64],
+        free: usize,
+        longest: f64,
+        fraction: f64,
+    ) -> Option<f64>;
+
+    /// The most that a vertex may go in a step.
+    fn reach(&self) -> f64;
+
+    /// Parts nearer to each other than this, a length, count as in contact.
+    fn set_gap(&mut self, gap: f64);
 }
 
 struct Detection<const D: usize> {
     boundary: Boundary<D>,
     broad: BroadPhase<D>,
+    gap: f64,
+    reach: f64,
     to: Vec<[f64; D]>,
 }
 
 impl<const D: usize> Apart for Detection<D> {
-    fn bound(&mut self, x: &[f64], direction: &[f64], fraction: f64, longest: f64) -> f64 {
+    fn free_part(
+        &mut self,
+        x: &[f64],
+        direction: &[f64],
+        free: usize,
+        longest: f64,
+        fraction: f64,
+    ) -> Option<f64> {
         let (from, along) = (x.as_chunks::<D>().0, direction.as_chunks::<D>().0);
         self.to.clear();
         let ends = from.iter().zip(along);
         self.to
             .extend(ends.map(|(x, d)| std::array::from_fn(|i| x[i] + longest * d[i])));
         self.broad.forget();
+        let boundary = &self.boundary;
         let hits = self
             .broad
-            .collisions(&self.boundary, from, &self.to, 0.0, |_| true);
-        let first = hits.iter().map(|hit| hit.1.time);
-        match first.min_by(f64::total_cmp) {
-            Some(time) => fraction * time * longest,
-            None => longest,
-        }
+            .collisions(boundary, from, &self.to, self.gap, |pair| {
+                let vertices = pair.vertices(boundary);
+                vertices.iter().any(|&v| (v as usize) < free)
+            });
+        let first = hits.iter().map(|hit| hit.1.time).min_by(f64::total_cmp);
+        first.map(|time| fraction * time)
+    }
+
+    fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    fn set_gap(&mut self, gap: f64) {
+        self.gap = gap;
     }
 }
 
 impl Newton {
-    /// From here on no step has the boundary of the body pass through itself or another body: it ends before
-    /// (conservative detection). Nothing pushes bodies apart; where they press on each other, it stalls.
+    /// From here on no step has the boundary of the body pass through itself or another body, nor come nearer to it
+    /// than `gap`, a length: steps end before that (conservative detection), and are straight. Nothing pushes bodies
+    /// apart; where they press on each other, it stalls.
     ///
     /// # Errors
     /// `NonManifoldFacet` where more than two elements share a facet.
-    pub fn keep_apart(&mut self, rest: &RestShape) -> Result<(), BuildError> {
+    pub fn keep_apart(&mut self, rest: &RestShape, gap: f64) -> Result<(), BuildError> {
         self.apart = Some(match self.evaluation.shape.dimension {
-            2 => Box::new(self.detection::<2>(rest)?),
-            _ => Box::new(self.detection::<3>(rest)?),
+            2 => Box::new(self.detection::<2>(rest, gap)?),
+            _ => Box::new(self.detection::<3>(rest, gap)?),
         });
+        // curves and vertices one by one are not looked after
+        self.turns = None;
+        self.relaxation = None;
         Ok(())
+    }
+
+    /// Another gap of [`Self::keep_apart`].
+    pub(crate) fn set_gap(&mut self, gap: f64) {
+        if let Some(apart) = &mut self.apart {
+            apart.set_gap(gap);
+        }
     }
 
     /// From here on no step inverts an element, whatever the energy.
@@ -56,7 +98,32 @@ impl Newton {
         self.keeps_positive = true;
     }
 
-    fn detection<const D: usize>(&self, rest: &RestShape) -> Result<Detection<D>, BuildError> {
+    /// The longest step of at most `longest` on which the boundary does not pass through itself, if it must not; whether
+    /// a contact bounds it.
+    pub(super) fn longest_apart(&mut self, longest: f64) -> (f64, bool) {
+        let Some(apart) = &mut self.apart else {
+            return (longest, false);
+        };
+        let dimension = self.evaluation.shape.dimension;
+        let squares = self.direction[..self.unknowns]
+            .chunks_exact(dimension)
+            .map(|d| d.iter().map(|d| d * d).sum::<f64>());
+        let way = squares.fold(0.0, f64::max).sqrt();
+        // what is swept far meets everything, and most of it for nothing
+        let longest = longest.min(1.0).min(apart.reach() / way);
+        let free = self.unknowns / dimension;
+        let fraction = self.options.fraction;
+        match apart.free_part(&self.x, &self.direction, free, longest, fraction) {
+            Some(part) => (part * longest, true),
+            None => (longest, false),
+        }
+    }
+
+    fn detection<const D: usize>(
+        &self,
+        rest: &RestShape,
+        gap: f64,
+    ) -> Result<Detection<D>, BuildError> {
         let slots = rest.vertices.iter().map(|&v| self.slot[v as usize]);
         let elements: Vec<u32> = slots.collect();
         let boundary = Boundary::new(&elements).map_err(|e| {
@@ -69,6 +136,8 @@ impl Newton {
         Ok(Detection {
             boundary,
             broad: BroadPhase::default(),
+            gap,
+            reach: rest.measure.iter().sum::<f64>().powf(1.0 / D as f64),
             to: Vec::new(),
         })
     }

@@ -34,7 +34,7 @@ impl Newton {
     /// As [`Self::search`], along the curve if elements turn far, and if that finds anything.
     pub(super) fn search_turning(&mut self, slope: f64) -> (Option<Found>, u32) {
         // where a triangle is near its end, straight steps know how near
-        if self.turns.is_none() || self.longest_step() < 1.0 {
+        if self.turns.is_none() || self.longest_step().0 < 1.0 {
             return self.search(slope);
         }
         let Some(mut turns) = self.turns.take() else {
@@ -67,6 +67,7 @@ impl Newton {
                     step: t,
                     value,
                     by_rounding,
+                    blocked: false,
                 });
                 if by_rounding {
                     break;

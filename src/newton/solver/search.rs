@@ -27,12 +27,14 @@ pub(super) struct Found {
     pub value: Value,
     /// Was the decrease demanded too small to be seen?
     pub by_rounding: bool,
+    /// Has a contact cut the step short?
+    pub blocked: bool,
 }
 
 impl Newton {
     /// The longest step that inverts nothing, if inverting costs, and on which the boundary does not pass through
-    /// itself, if it must not.
-    pub(super) fn longest_step(&mut self) -> f64 {
+    /// itself, if it must not; whether it is a contact that bounds it.
+    pub(super) fn longest_step(&mut self) -> (f64, bool) {
         let NewtonOptions {
             fraction, longest, ..
         } = self.options;
@@ -48,10 +50,12 @@ impl Newton {
             ),
             false => longest,
         };
-        match &mut self.apart {
-            Some(apart) => apart.bound(&self.x, &self.direction, fraction, positive),
-            None => positive,
-        }
+        self.longest_apart(positive)
+    }
+
+    /// May positions with this value be taken?
+    fn is_allowed(&self, value: &Value) -> bool {
+        value.energy.is_finite() && !(self.keeps_positive && value.inverted > 0)
     }
 
     /// Evaluates a step along the direction, into `trial` and `trial_gradient`.
@@ -70,7 +74,7 @@ impl Newton {
     /// secants on the slope nearer to the minimum along the direction. The evaluation there is in `trial` and
     /// `trial_gradient`; the number of trials.
     pub(super) fn search(&mut self, slope: f64) -> (Option<Found>, u32) {
-        let bound = self.longest_step();
+        let (bound, blocked) = self.longest_step();
         let mut step = bound.min(1.0);
         let resolution = self.resolution();
         for trials in 1..=MOST_HALVINGS {
@@ -80,11 +84,12 @@ impl Newton {
                 true => self.energy,
                 false => self.energy + self.options.decrease * step * slope,
             };
-            if value.energy.is_finite() && value.energy <= enough {
+            if self.is_allowed(&value) && value.energy <= enough {
                 let mut found = Found {
                     step,
                     value,
                     by_rounding,
+                    blocked,
                 };
                 let more = match by_rounding {
                     true => 0,
@@ -118,7 +123,7 @@ impl Newton {
                 () => return trials,
             };
             let value = self.try_step(next);
-            if !(next > 0.0 && value.energy < found.value.energy) {
+            if !(next > 0.0 && self.is_allowed(&value) && value.energy < found.value.energy) {
                 // back to where it was: the evaluation, too, whose F the next matrix needs
                 found.value = self.try_step(found.step);
                 return trials + 2;
