@@ -3,9 +3,10 @@
 //! The factor is computed by [`Supernodes`], and copied without their padding zeros into panels, which are
 //! fastest to solve with when, as on surfaces, supernodes are small.
 
+use core::array::from_fn;
 use nalgebra_sparse::CscMatrix;
 
-use super::panels::Panels;
+use super::panels::{Panels, ROWS};
 use super::supernodes::{NotPositiveDefinite, Supernodes};
 use super::triangular::Factor;
 use crate::optim::BuildError;
@@ -36,8 +37,11 @@ impl Cholesky {
     pub fn analyze(lower: &CscMatrix<f64>, levels: &[Vec<usize>]) -> Result<Self, BuildError> {
         let n = lower.ncols();
         let upper = lower.transpose();
-        let supernodes = Supernodes::of_upper(&upper)?;
-        let panels = Panels::new(&upper, levels);
+        let (supernodes, panels) = parallel::join(
+            || Supernodes::of_upper(&upper),
+            || Panels::new(&upper, levels),
+        );
+        let supernodes = supernodes?;
         let source = sources(&supernodes, &panels);
         let diagonal = panels.diagonal();
         Ok(Self {
@@ -135,24 +139,40 @@ fn sources(supernodes: &Supernodes, panels: &Panels) -> Vec<u32> {
     }
     let fill = supernodes.values().len() as u32 - 1;
     let blocks = supernodes.blocks();
+    let begin = blocks.supernode_begin();
     // of the supernode `node`, whose columns end at `end`: where each row is in them
     let mut place = vec![0u32; n];
     let (mut node, mut end, mut height) = (0, 0, 0);
-    panels.map(fill, |i, j| {
-        let j = j as usize;
-        let begin = blocks.supernode_begin();
-        if j >= end {
-            node = begin.partition_point(|&b| b <= j) - 1;
+    let mut sources = Vec::with_capacity(panels.values);
+    for panel in &panels.panels {
+        // a panel is within a supernode
+        let first = panel.first as usize;
+        if first >= end {
+            node = begin.partition_point(|&b| b <= first) - 1;
             end = blocks.supernode_end()[node];
             let pattern = blocks.supernode(node).pattern();
-            for (k, row) in (begin[node]..end)
-                .chain(pattern.iter().copied())
-                .enumerate()
-            {
-                place[row] = k as u32;
+            for (row, k) in (begin[node]..end).chain(pattern.iter().copied()).zip(0..) {
+                place[row] = k;
             }
-            height = end - begin[node] + pattern.len();
+            height = (end - begin[node] + pattern.len()) as u32;
         }
-        (blocks.col_ptr_for_val()[node] + (j - begin[node]) * height) as u32 + place[i as usize]
-    })
+        let column = place[first];
+        let top = blocks.col_ptr_for_val()[node] as u32 + column * height;
+        for j in 0..panel.width {
+            sources.extend((j..panel.width).map(|i| top + j * height + column + i));
+        }
+        for four in &panels.rows[panel.rows()] {
+            // rows that fill up are those before them
+            let places = four.map(|row| place[row as usize]);
+            let is_fill: [bool; ROWS] = from_fn(|k| k > 0 && four[k] == four[k - 1]);
+            for j in 0..panel.width {
+                let at = |k| match is_fill[k] {
+                    true => fill,
+                    false => top + j * height + places[k],
+                };
+                sources.extend::<[u32; ROWS]>(from_fn(at));
+            }
+        }
+    }
+    sources
 }
