@@ -3,7 +3,6 @@
 //! The factor is computed by [`Supernodes`], and copied without their padding zeros into panels, which are
 //! fastest to solve with when, as on surfaces, supernodes are small.
 
-use core::array::from_fn;
 use nalgebra_sparse::CscMatrix;
 
 use super::panels::{Panels, ROWS};
@@ -162,15 +161,17 @@ fn sources(supernodes: &Supernodes, panels: &Panels) -> Vec<u32> {
             sources.extend((j..panel.width).map(|i| top + j * height + column + i));
         }
         for four in &panels.rows[panel.rows()] {
-            // rows that fill up are those before them
-            let places = four.map(|row| place[row as usize]);
-            let is_fill: [bool; ROWS] = from_fn(|k| k > 0 && four[k] == four[k - 1]);
-            for j in 0..panel.width {
-                let at = |k| match is_fill[k] {
-                    true => fill,
-                    false => top + j * height + places[k],
-                };
-                sources.extend::<[u32; ROWS]>(from_fn(at));
+            let [mut at, mut step] = [[fill; ROWS], [0; ROWS]];
+            for k in 0..ROWS {
+                // rows that fill up are those before them
+                if k == 0 || four[k] != four[k - 1] {
+                    at[k] = top + place[four[k] as usize];
+                    step[k] = height;
+                }
+            }
+            for _ in 0..panel.width {
+                sources.extend_from_slice(&at);
+                (0..ROWS).for_each(|k| at[k] += step[k]);
             }
         }
     }
