@@ -1,6 +1,6 @@
 //! Assembly, ordering and Cholesky against dense arithmetic and another library's factorisation.
 
-use foldfree::linalg::{Bisector, Cholesky, EliminationTree, Graph as Pattern};
+use foldfree::linalg::{Cholesky, EliminationTree, Graph as Pattern, bisect};
 use foldfree::linalg::{NotPositiveDefinite, Order, Supernodes};
 use foldfree::linalg::{SymmetricAssembly, WeightedSum};
 use nalgebra_sparse::factorization::CscCholesky;
@@ -414,8 +414,7 @@ fn a_separator_separates_and_is_small() {
         (apart, 0),
     ] {
         let pattern = Pattern::new(graph.n, graph.edges.iter().map(|&(a, b, _)| (a, b)));
-        let all: Vec<u32> = (0..graph.n as u32).collect();
-        let split = Bisector::new(&pattern).bisect(&all);
+        let split = bisect(&pattern);
         let mut side = vec![2; graph.n];
         for (k, vertices) in split.sides.iter().enumerate() {
             assert!(

@@ -2,6 +2,7 @@
 
 use super::RestShape;
 use crate::linalg::Order;
+use core::array::from_fn;
 
 /// Slots of the vertices.
 #[derive(Debug, Clone)]
@@ -56,20 +57,32 @@ impl Elimination {
         }
     }
 
-    /// The contributions (row, column, element, A g_a·g_b) of (5a), by slot.
+    /// The contributions (row, column, element, A g_a·g_b) of (5a) between free vertices, by slot.
     pub fn laplacian(&self, rest: &RestShape) -> Vec<(u32, u32, u32, f64)> {
-        let corners = rest.stretches + 1;
-        let mut list = Vec::with_capacity(rest.len() * corners * (corners + 1) / 2);
-        for e in 0..rest.len() {
-            let s = rest.simplex(e);
-            for a in 0..corners {
+        match rest.stretches {
+            2 => self.laplacian_of::<3>(rest),
+            _ => self.laplacian_of::<4>(rest),
+        }
+    }
+
+    /// The same of elements with this many corners.
+    fn laplacian_of<const CORNERS: usize>(&self, rest: &RestShape) -> Vec<(u32, u32, u32, f64)> {
+        let mut list = Vec::with_capacity(rest.len() * CORNERS * (CORNERS + 1) / 2);
+        let is_free = |slot: u32| (slot as usize) < self.free;
+        for (simplex, e) in rest.vertices.as_chunks::<CORNERS>().0.iter().zip(0..) {
+            let slots = simplex.map(|v| self.slot[v as usize]);
+            if !slots.iter().any(|&slot| is_free(slot)) {
+                continue;
+            }
+            let measure = rest.measure[e as usize];
+            let gradients: [_; CORNERS] = from_fn(|a| rest.hat_gradient(e as usize, a));
+            for a in 0..CORNERS {
                 for b in 0..=a {
-                    list.push((
-                        self.slot[s[a] as usize],
-                        self.slot[s[b] as usize],
-                        e as u32,
-                        rest.measure[e] * rest.hat_product(e, a, b),
-                    ));
+                    if is_free(slots[a]) && is_free(slots[b]) {
+                        let [g, h] = [gradients[a], gradients[b]];
+                        let product = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
+                        list.push((slots[a], slots[b], e, measure * product));
+                    }
                 }
             }
         }

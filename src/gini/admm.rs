@@ -81,12 +81,21 @@ impl Admm {
         let shape = body.shape;
         let k = shape.constants.rest_stiffness;
         let terms = Terms::new(external, start, &elimination.slot, elimination.free);
-        let mut system = System::new(rest, elimination, Some(external))?;
-        system
-            .factorize(Some(&terms), |_| k)
-            .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
-        let blocks = build_blocks(rest, &elimination.slot, &shape);
-        let (corner_begin, corners) = corner_lists(rest, &elimination.slot, elimination.free);
+        let (slot, free) = (&elimination.slot, elimination.free);
+        let (system, (blocks, (corner_begin, corners))) = parallel::join(
+            || {
+                let mut system = System::new(rest, elimination, Some(external))?;
+                system
+                    .factorize(Some(&terms), |_| k)
+                    .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
+                Ok::<_, BuildError>(system)
+            },
+            || {
+                let blocks = build_blocks(rest, slot, &shape);
+                (blocks, corner_lists(rest, slot, free))
+            },
+        );
+        let system = system?;
         let stride = Pass::Last.stride(shape.dimension);
         let diagonal = system.diagonal();
         let compliance = diagonal.map(f64::recip).sum::<f64>() / elimination.free.max(1) as f64;

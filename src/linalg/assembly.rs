@@ -1,5 +1,6 @@
 //! Assembly of symmetric matrices: the pattern once, the values often.
 
+use super::graph::starts;
 use crate::parallel;
 use nalgebra_sparse::CscMatrix;
 use nalgebra_sparse::pattern::SparsityPattern;
@@ -24,58 +25,54 @@ impl SymmetricAssembly {
     /// row < column is mirrored, so (i, j) and (j, i) add up in one entry: give each once.
     /// Entries of a row or column ≥ n are left out (fixed unknowns). The diagonal is always stored.
     pub fn new(n: usize, triplets: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
-        let keep = |&(_, (i, j)): &(usize, (u32, u32))| (i as usize) < n && (j as usize) < n;
-        // counting sort by column, then by row: linear and independent of any hash
-        let mut by_row = vec![0u32; n + 1];
-        let sorted = |counts: &mut Vec<u32>,
-                      key: &dyn Fn(u32, u32) -> u32,
-                      order: &[u32],
-                      list: &[(u32, u32)]| {
-            counts.iter_mut().for_each(|c| *c = 0);
-            for &(i, j) in list {
-                counts[key(i, j) as usize + 1] += 1;
+        let inside = |(i, j): (u32, u32)| (i.max(j) as usize) < n;
+        // counting sort by row, then by column: linear and independent of any hash
+        let [mut of_row, mut of_column] = [vec![0u32; n + 1], vec![0u32; n + 1]];
+        triplets.clone().for_each(|(i, j)| {
+            if inside((i, j)) {
+                of_row[i.max(j) as usize] += 1;
+                of_column[i.min(j) as usize] += 1;
             }
-            for k in 0..n {
-                counts[k + 1] += counts[k];
-            }
-            let mut out = vec![0u32; list.len()];
-            for &t in order {
-                let (i, j) = list[t as usize];
-                let slot = &mut counts[key(i, j) as usize];
-                out[*slot as usize] = t;
+        });
+        let kept = starts(&mut of_row);
+        starts(&mut of_column);
+        // column and contribution by row
+        let mut by_row = vec![(0u32, 0u32); kept];
+        let mut next = of_row.clone();
+        triplets.zip(0..).for_each(|((i, j), t)| {
+            if inside((i, j)) {
+                let slot = &mut next[i.max(j) as usize];
+                by_row[*slot as usize] = (i.min(j), t);
                 *slot += 1;
             }
-            out
-        };
-        let mut list: Vec<(u32, u32)> = Vec::new();
-        let mut origin: Vec<u32> = Vec::new();
-        for (t, (i, j)) in triplets.enumerate().filter(keep) {
-            list.push((i.max(j), i.min(j)));
-            origin.push(t as u32);
+        });
+        // row and contribution by column
+        let mut by_column = vec![(0u32, 0u32); kept];
+        next.copy_from_slice(&of_column);
+        for row in 0..n {
+            for &(column, t) in &by_row[of_row[row] as usize..of_row[row + 1] as usize] {
+                let slot = &mut next[column as usize];
+                by_column[*slot as usize] = (row as u32, t);
+                *slot += 1;
+            }
         }
-        let identity: Vec<u32> = (0..list.len() as u32).collect();
-        let order = sorted(&mut by_row, &|i, _| i, &identity, &list);
-        let order = sorted(&mut by_row, &|_, j| j, &order, &list);
 
         let mut offsets = Vec::with_capacity(n + 1);
         let mut rows: Vec<usize> = Vec::new();
         let mut begin = vec![0u32];
-        let mut contribution = Vec::with_capacity(order.len());
+        let mut contribution = Vec::with_capacity(kept);
         offsets.push(0);
-        let mut next = 0;
         for column in 0..n {
+            let mut last = column;
             rows.push(column);
-            while next < order.len() {
-                let (i, j) = list[order[next] as usize];
-                if j as usize != column {
-                    break;
-                }
-                if i as usize != rows[rows.len() - 1] {
+            for &(row, t) in &by_column[of_column[column] as usize..of_column[column + 1] as usize]
+            {
+                if row as usize != last {
+                    last = row as usize;
                     begin.push(contribution.len() as u32);
-                    rows.push(i as usize);
+                    rows.push(last);
                 }
-                contribution.push(origin[order[next] as usize]);
-                next += 1;
+                contribution.push(t);
             }
             begin.push(contribution.len() as u32);
             offsets.push(rows.len());

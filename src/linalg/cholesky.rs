@@ -5,7 +5,7 @@
 
 use nalgebra_sparse::CscMatrix;
 
-use super::panels::Panels;
+use super::panels::{Panels, ROWS};
 use super::supernodes::{NotPositiveDefinite, Supernodes};
 use super::triangular::Factor;
 use crate::optim::BuildError;
@@ -36,8 +36,11 @@ impl Cholesky {
     pub fn analyze(lower: &CscMatrix<f64>, levels: &[Vec<usize>]) -> Result<Self, BuildError> {
         let n = lower.ncols();
         let upper = lower.transpose();
-        let supernodes = Supernodes::of_upper(&upper)?;
-        let panels = Panels::new(&upper, levels);
+        let (supernodes, panels) = parallel::join(
+            || Supernodes::of_upper(&upper),
+            || Panels::new(&upper, levels),
+        );
+        let supernodes = supernodes?;
         let source = sources(&supernodes, &panels);
         let diagonal = panels.diagonal();
         Ok(Self {
@@ -135,24 +138,42 @@ fn sources(supernodes: &Supernodes, panels: &Panels) -> Vec<u32> {
     }
     let fill = supernodes.values().len() as u32 - 1;
     let blocks = supernodes.blocks();
+    let begin = blocks.supernode_begin();
     // of the supernode `node`, whose columns end at `end`: where each row is in them
     let mut place = vec![0u32; n];
     let (mut node, mut end, mut height) = (0, 0, 0);
-    panels.map(fill, |i, j| {
-        let j = j as usize;
-        let begin = blocks.supernode_begin();
-        if j >= end {
-            node = begin.partition_point(|&b| b <= j) - 1;
+    let mut sources = Vec::with_capacity(panels.values);
+    for panel in &panels.panels {
+        // a panel is within a supernode
+        let first = panel.first as usize;
+        if first >= end {
+            node = begin.partition_point(|&b| b <= first) - 1;
             end = blocks.supernode_end()[node];
             let pattern = blocks.supernode(node).pattern();
-            for (k, row) in (begin[node]..end)
-                .chain(pattern.iter().copied())
-                .enumerate()
-            {
-                place[row] = k as u32;
+            for (row, k) in (begin[node]..end).chain(pattern.iter().copied()).zip(0..) {
+                place[row] = k;
             }
-            height = end - begin[node] + pattern.len();
+            height = (end - begin[node] + pattern.len()) as u32;
         }
-        (blocks.col_ptr_for_val()[node] + (j - begin[node]) * height) as u32 + place[i as usize]
-    })
+        let column = place[first];
+        let top = blocks.col_ptr_for_val()[node] as u32 + column * height;
+        for j in 0..panel.width {
+            sources.extend((j..panel.width).map(|i| top + j * height + column + i));
+        }
+        for four in &panels.rows[panel.rows()] {
+            let [mut at, mut step] = [[fill; ROWS], [0; ROWS]];
+            for k in 0..ROWS {
+                // rows that fill up are those before them
+                if k == 0 || four[k] != four[k - 1] {
+                    at[k] = top + place[four[k] as usize];
+                    step[k] = height;
+                }
+            }
+            for _ in 0..panel.width {
+                sources.extend_from_slice(&at);
+                (0..ROWS).for_each(|k| at[k] += step[k]);
+            }
+        }
+    }
+    sources
 }

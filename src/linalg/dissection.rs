@@ -4,31 +4,18 @@
 //! It takes the graph alone, no coordinates, so that neither rotation nor scale can change an order.
 //! A half is one end of the graph as seen by a walker: breadth-first distances from two vertices far
 //! apart, one minus the other, smoothed by a few averages over neighbours, cut near the
-//! median. The separator is the smallest set of vertices that covers all cut edges (Kőnig 1931: from a largest
-//! matching of the cut edges).
+//! median. The separator is the smallest set of vertices that covers all cut edges.
 
 use super::Graph;
-use std::collections::BTreeSet;
+use super::cut::Cut;
 
 /// The two sides and what separates them.
 #[derive(Debug, Clone, Default)]
 pub struct Bisection {
-    /// One side and the other.
+    /// One side and the other, ascending.
     pub sides: [Vec<u32>; 2],
-    /// No edge leads from one side to the other but through these.
+    /// No edge leads from one side to the other but through these (ascending).
     pub separator: Vec<u32>,
-}
-
-/// Room for bisections of one graph.
-pub struct Bisector<'a> {
-    graph: &'a Graph,
-    /// Which call a vertex belongs to.
-    member: Vec<u32>,
-    calls: u32,
-    /// Distance or place in this call.
-    number: Vec<u32>,
-    value: Vec<f64>,
-    smooth: Vec<f64>,
 }
 
 const NONE: u32 = u32::MAX;
@@ -36,253 +23,203 @@ const NONE: u32 = u32::MAX;
 /// Walks that are tried, each from a vertex far from the ends of the one before.
 const WALKS: usize = 3;
 
-/// Places that are tried, as the fraction of the vertices on one side.
-const PLACES: [f64; 5] = [0.5, 0.46, 0.54, 0.42, 0.58];
+/// Places that are tried, as the fraction of the vertices on one side: ascending,
+const PLACES: [f64; 5] = [0.42, 0.46, 0.5, 0.54, 0.58];
+
+/// and in the order in which they are tried: of equals the first is taken.
+const TRIED: [usize; 5] = [2, 1, 3, 0, 4];
 
 /// Averages over neighbours: enough that level sets are as straight as a mesh allows.
 const SMOOTHING: usize = 12;
 
-impl<'a> Bisector<'a> {
-    /// For this graph.
-    pub fn new(graph: &'a Graph) -> Self {
-        let n = graph.vertices();
-        Self {
-            graph,
-            member: vec![0; n],
-            calls: 0,
-            number: vec![NONE; n],
-            value: vec![0.0; n],
-            smooth: vec![0.0; n],
+/// Splits a graph. What separates the sides are vertices of its largest component; the other components
+/// fill up the smaller side.
+pub fn bisect(graph: &Graph) -> Bisection {
+    let n = graph.vertices();
+    let mut distance = vec![NONE; n];
+    let mut components = Vec::new();
+    for v in 0..n as u32 {
+        if distance[v as usize] == NONE {
+            components.push(reach(graph, v, &mut distance));
         }
     }
-
-    /// Breadth-first distances from `start` to all that it reaches among the members, into `number`,
-    /// which is `NONE` there; returns those, nearest first.
-    fn reach(&mut self, start: u32) -> Vec<u32> {
-        let mut queue = vec![start];
-        self.number[start as usize] = 0;
-        let mut head = 0;
-        while head < queue.len() {
-            let v = queue[head];
-            head += 1;
-            for &w in self.graph.of(v) {
-                let w_at = w as usize;
-                if self.member[w_at] == self.calls && self.number[w_at] == NONE {
-                    self.number[w_at] = self.number[v as usize] + 1;
-                    queue.push(w);
-                }
-            }
-        }
-        queue
+    components.sort_by_key(|c| core::cmp::Reverse(c.len()));
+    let mut components = components.into_iter();
+    let Some(mut largest) = components.next() else {
+        return Bisection::default();
+    };
+    let farthest = largest[largest.len() - 1];
+    if largest.len() == n && n > 1 {
+        return bisect_connected(graph, farthest);
     }
-
-    /// Distances from `start` to all of a connected set; returns the last of the farthest.
-    fn distances(&mut self, vertices: &[u32], start: u32) -> u32 {
-        for &v in vertices {
-            self.number[v as usize] = NONE;
-        }
-        let reached = self.reach(start);
-        reached[reached.len() - 1]
-    }
-
-    /// Splits a set of vertices. What separates them are vertices of its largest component; the other
-    /// components fill up the smaller side.
-    pub fn bisect(&mut self, vertices: &[u32]) -> Bisection {
-        self.calls += 1;
-        for &v in vertices {
-            self.member[v as usize] = self.calls;
-            self.number[v as usize] = NONE;
-        }
-        let mut components = Vec::new();
-        for &v in vertices {
-            if self.number[v as usize] == NONE {
-                components.push(self.reach(v));
-            }
-        }
-        components.sort_by_key(|c| core::cmp::Reverse(c.len()));
-        let mut components = components.into_iter();
-        let Some(mut largest) = components.next() else {
-            return Bisection::default();
-        };
-        largest.sort_unstable();
-        let mut split = match largest.len() > vertices.len().div_ceil(2) {
-            true => self.bisect_connected(&largest),
-            false => Bisection {
-                sides: [largest, Vec::new()],
-                separator: Vec::new(),
-            },
-        };
-        for component in components {
-            let smaller = usize::from(split.sides[1].len() < split.sides[0].len());
-            split.sides[smaller].extend(component);
-        }
-        split.sides.iter_mut().for_each(|side| side.sort_unstable());
-        split
-    }
-
-    /// Splits a connected set: of a few ways to walk through the graph and a few places near the middle,
-    /// the one with the smallest separator for its balance.
-    fn bisect_connected(&mut self, vertices: &[u32]) -> Bisection {
-        if let &[single] = vertices {
-            return Bisection {
-                separator: vec![single],
-                ..Bisection::default()
-            };
-        }
-        let mut best: Option<(f64, Vec<u32>, usize, BTreeSet<u32>)> = None;
-        let mut one = self.distances(vertices, vertices[0]);
-        for _ in 0..WALKS {
-            let beside = self.walk(vertices, one);
-            let mut order = vertices.to_vec();
-            order.sort_by(|&a, &b| {
-                let values = [a, b].map(|v| self.value[v as usize]);
-                values[0].total_cmp(&values[1]).then(a.cmp(&b))
-            });
-            for place in PLACES {
-                let left = (order.len() as f64 * place) as usize;
-                let left = left.clamp(1, order.len() - 1);
-                let cover = self.cover(&order, left);
-                let smaller = left.min(order.len() - left);
-                let cost = cover.len() as f64 / smaller as f64;
-                if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
-                    best = Some((cost, order.clone(), left, cover));
-                }
-            }
-            one = beside;
-        }
-        let (_, order, left, cover) = best.unwrap_or_default();
-        let side = |part: &[u32]| -> Vec<u32> {
-            let own = part.iter().copied().filter(|v| !cover.contains(v));
-            own.collect()
-        };
+    largest.sort_unstable();
+    let mut split = if largest.len() > n.div_ceil(2) {
+        bisect_part(graph, &largest, farthest)
+    } else {
         Bisection {
-            sides: [side(&order[..left]), side(&order[left..])],
-            separator: cover.iter().copied().collect(),
+            sides: [largest, Vec::new()],
+            separator: Vec::new(),
+        }
+    };
+    for component in components {
+        let smaller = usize::from(split.sides[1].len() < split.sides[0].len());
+        split.sides[smaller].extend(component);
+    }
+    split.sides.iter_mut().for_each(|side| side.sort_unstable());
+    split
+}
+
+/// Breadth-first distances from `start` to all that it reaches, into `distance`, which is `NONE` there;
+/// returns those, nearest first.
+fn reach(graph: &Graph, start: u32, distance: &mut [u32]) -> Vec<u32> {
+    let mut queue = vec![start];
+    distance[start as usize] = 0;
+    let mut head = 0;
+    while head < queue.len() {
+        let v = queue[head];
+        head += 1;
+        let next = distance[v as usize] + 1;
+        for &w in graph.of(v) {
+            let distance = &mut distance[w as usize];
+            if *distance == NONE {
+                *distance = next;
+                queue.push(w);
+            }
         }
     }
+    queue
+}
 
-    /// Sets `value` to how far along a vertex is on the walk from `one` to the vertex farthest from it;
-    /// returns a vertex far from both ends.
-    fn walk(&mut self, vertices: &[u32], one: u32) -> u32 {
-        let other = self.distances(vertices, one);
-        for &v in vertices {
-            self.value[v as usize] = f64::from(self.number[v as usize]);
-        }
-        self.distances(vertices, other);
-        let mut beside = (0.0, one);
-        for &v in vertices {
-            let distance = f64::from(self.number[v as usize]);
-            let value = &mut self.value[v as usize];
-            let nearer = distance.min(*value);
-            if nearer > beside.0 {
-                beside = (nearer, v);
+/// Distances from `start` to all of a connected graph; returns the last of the farthest.
+fn distances(graph: &Graph, start: u32, distance: &mut [u32]) -> u32 {
+    distance.fill(NONE);
+    let reached = reach(graph, start, distance);
+    reached[reached.len() - 1]
+}
+
+/// Splits a component of two vertices or more (ascending), by walks of which the first is from `start`.
+fn bisect_part(graph: &Graph, component: &[u32], start: u32) -> Bisection {
+    let part = graph.part(component, &graph.places(&[component]));
+    let start = component.partition_point(|&v| v < start);
+    let mut split = bisect_connected(&part, start as u32);
+    let sets = split.sides.iter_mut().chain([&mut split.separator]);
+    sets.flatten().for_each(|v| *v = component[*v as usize]);
+    split
+}
+
+/// Splits a connected graph of two vertices or more: of a few ways to walk through it, the first from
+/// `start`, and a few places near the middle, the one with the smallest separator for its balance.
+fn bisect_connected(graph: &Graph, start: u32) -> Bisection {
+    let n = graph.vertices();
+    let ends = PLACES.map(|place| ((n as f64 * place) as usize).clamp(1, n - 1));
+    let values = walks(graph, start);
+    let mut cut = Cut::new(n);
+    let mut best: Option<(f64, Vec<bool>, Vec<u32>)> = None;
+    for walk in 0..WALKS {
+        let zone = zones(values.iter().map(|v| v[walk]), &ends);
+        let boundaries = boundaries(graph, &zone);
+        for place in TRIED {
+            let smaller = ends[place].min(n - ends[place]) as f64;
+            let least = best.as_ref().map_or(f64::INFINITY, |(least, ..)| *least);
+            let is_left = |v: u32| usize::from(zone[v as usize]) <= place;
+            let better = |size: usize| size as f64 / smaller < least;
+            if let Some(cover) = cut.cover(graph, &boundaries[place], is_left, better) {
+                let left = (0..n as u32).map(is_left).collect();
+                best = Some((cover.len() as f64 / smaller, left, cover));
             }
-            *value -= distance;
         }
-        for _ in 0..SMOOTHING {
-            for &v in vertices {
-                let own = |w: &&u32| self.member[**w as usize] == self.calls;
-                let neighbours = self.graph.of(v).iter().filter(own);
-                let (sum, count) = neighbours.fold((0.0, 0.0), |(sum, count), &w| {
-                    (sum + self.value[w as usize], count + 1.0)
-                });
-                self.smooth[v as usize] = (self.value[v as usize] + sum) / (1.0 + count);
-            }
-            core::mem::swap(&mut self.value, &mut self.smooth);
-        }
-        beside.1
     }
-
-    /// The smallest set of vertices that covers every edge between the first `half` of `order` and the
-    /// rest.
-    fn cover(&mut self, order: &[u32], half: usize) -> BTreeSet<u32> {
-        for (k, &v) in order.iter().enumerate() {
-            self.number[v as usize] = k as u32;
-        }
-        let (graph, member, calls, number) = (self.graph, &self.member, self.calls, &self.number);
-        // partners across the cut of a vertex of the left side
-        let across = |v: u32| {
-            graph.of(v).iter().copied().filter(move |&w| {
-                member[w as usize] == calls && number[w as usize] as usize >= half
-            })
-        };
-        let left: Vec<u32> = order[..half]
-            .iter()
-            .copied()
-            .filter(|&v| across(v).next().is_some())
-            .collect();
-        // by place in `order`: the partner of a matched vertex
-        let mut partner = vec![NONE; order.len()];
-        let mut seen = vec![NONE; order.len()];
-        for (round, &start) in left.iter().enumerate() {
-            augment(
-                start,
-                round as u32,
-                &across,
-                number,
-                &mut partner,
-                &mut seen,
-            );
-        }
-        // what alternating paths from unmatched vertices of the left side reach
-        let mut reached = vec![false; order.len()];
-        let unmatched = |v: &u32| partner[number[*v as usize] as usize] == NONE;
-        let mut stack: Vec<u32> = left.iter().copied().filter(unmatched).collect();
-        stack
-            .iter()
-            .for_each(|&v| reached[number[v as usize] as usize] = true);
-        while let Some(v) = stack.pop() {
-            for w in across(v) {
-                let place = number[w as usize] as usize;
-                if !reached[place] {
-                    reached[place] = true;
-                    let back = partner[place];
-                    if back != NONE && !reached[number[back as usize] as usize] {
-                        reached[number[back as usize] as usize] = true;
-                        stack.push(back);
-                    }
-                }
-            }
-        }
-        let of_left = left
-            .iter()
-            .filter(|&&v| !reached[number[v as usize] as usize]);
-        let of_right = order[half..]
-            .iter()
-            .filter(|&&w| reached[number[w as usize] as usize]);
-        of_left.chain(of_right).copied().collect()
+    let (_, mut left, separator) = best.unwrap_or_default();
+    let mut right: Vec<bool> = left.iter().map(|left| !left).collect();
+    for &v in &separator {
+        left[v as usize] = false;
+        right[v as usize] = false;
+    }
+    let members = |is: Vec<bool>| (0..).zip(is).filter_map(|(v, is)| is.then_some(v));
+    Bisection {
+        sides: [left, right].map(|side| members(side).collect()),
+        separator,
     }
 }
 
-/// Looks for a path from `start` that alternates between unmatched and matched edges and ends at an
-/// unmatched vertex of the right side, and makes the matching larger by it.
-fn augment<'a, I: Iterator<Item = u32> + 'a>(
-    start: u32,
-    round: u32,
-    across: &impl Fn(u32) -> I,
-    number: &[u32],
-    partner: &mut [u32],
-    seen: &mut [u32],
-) {
-    // depth first with a stack of its own: paths can be long
-    let mut path: Vec<(u32, I, u32)> = vec![(start, across(start), NONE)];
-    while let Some((_, candidates, taken)) = path.last_mut() {
-        let Some(w) = candidates.find(|&w| seen[number[w as usize] as usize] != round) else {
-            path.pop();
-            continue;
-        };
-        *taken = w;
-        let place = number[w as usize] as usize;
-        seen[place] = round;
-        let back = partner[place];
-        if back != NONE {
-            path.push((back, across(back), NONE));
-            continue;
+/// How far along each vertex is on each walk, of which the first is from `one` to the vertex farthest from
+/// it; the next begins far from both ends.
+fn walks(graph: &Graph, mut one: u32) -> Vec<[f64; WALKS]> {
+    let n = graph.vertices();
+    let mut value = vec![[0.0; WALKS]; n];
+    let [mut from, mut to] = [vec![0u32; n], vec![0u32; n]];
+    for walk in 0..WALKS {
+        let other = distances(graph, one, &mut from);
+        distances(graph, other, &mut to);
+        let mut beside = (0, one);
+        for (v, (&from, &to)) in from.iter().zip(&to).enumerate() {
+            let nearer = from.min(to);
+            if nearer > beside.0 {
+                beside = (nearer, v as u32);
+            }
+            value[v][walk] = f64::from(from) - f64::from(to);
         }
-        for (v, _, taken) in path {
-            partner[number[v as usize] as usize] = taken;
-            partner[number[taken as usize] as usize] = v;
-        }
-        return;
+        one = beside.1;
     }
+    let mut smooth = value.clone();
+    for _ in 0..SMOOTHING {
+        for (v, (smooth, own)) in smooth.iter_mut().zip(&value).enumerate() {
+            let neighbours = graph.of(v as u32);
+            let mut sums = [0.0; WALKS];
+            for &w in neighbours {
+                let of_neighbour = &value[w as usize];
+                for walk in 0..WALKS {
+                    sums[walk] += of_neighbour[walk];
+                }
+            }
+            let count = 1.0 + neighbours.len() as f64;
+            *smooth = core::array::from_fn(|walk| (own[walk] + sums[walk]) / count);
+        }
+        core::mem::swap(&mut value, &mut smooth);
+    }
+    value
+}
+
+/// How many of these ends (ascending) a vertex is behind, were the vertices sorted by value, then by number:
+/// those before end k are in zones up to k.
+fn zones(values: impl Iterator<Item = f64>, ends: &[usize; PLACES.len()]) -> Vec<u8> {
+    // integers in the order of `f64::total_cmp`
+    let key = |value: f64| {
+        let bits = value.to_bits() as i64;
+        bits ^ (((bits >> 63) as u64) >> 1) as i64
+    };
+    let mut order: Vec<(i64, u32)> = values.map(key).zip(0..).collect();
+    // the middle first, outwards from there
+    let [a, b, c, d, e] = *ends;
+    for (first, end, limit) in [
+        (0, c, order.len()),
+        (0, b, c),
+        (0, a, b),
+        (c, d, order.len()),
+        (d, e, order.len()),
+    ] {
+        if end < limit {
+            order[first..limit].select_nth_unstable(end - first);
+        }
+    }
+    let mut zone = vec![0; order.len()];
+    for (&end, number) in ends.iter().zip(1..) {
+        for &(_, v) in &order[end..] {
+            zone[v as usize] = number;
+        }
+    }
+    zone
+}
+
+/// For each place the vertices before it that have a neighbour behind it.
+fn boundaries(graph: &Graph, zone: &[u8]) -> [Vec<u32>; PLACES.len()] {
+    let mut boundaries = [const { Vec::new() }; PLACES.len()];
+    for (&own, v) in zone.iter().zip(0..) {
+        let of_neighbours = graph.of(v).iter().map(|&w| zone[w as usize]);
+        let last = of_neighbours.fold(own, u8::max);
+        for boundary in &mut boundaries[usize::from(own)..usize::from(last)] {
+            boundary.push(v);
+        }
+    }
+    boundaries
 }

@@ -1,11 +1,8 @@
 //! The order of elimination.
 
-use super::dissection::Bisector;
-use super::{EliminationTree, Graph, SymmetricAssembly};
+use super::minimum_degree::{Halo, minimum_degree};
+use super::{EliminationTree, Graph, SymmetricAssembly, bisect};
 use crate::parallel;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::amd;
 
 /// An order of elimination that keeps the Cholesky factor sparse, in parts for threads.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -36,11 +33,11 @@ impl Order {
     /// pattern alone, never on the number of threads.
     pub fn new(n: usize, edges: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
         let graph = Graph::new(n, edges);
-        let all: Vec<u32> = (0..n as u32).collect();
         let first = if graph.mean_degree() > SOLID_DEGREE {
-            dissected(&graph, &mut Bisector::new(&graph), &all)
+            let all: Vec<u32> = (0..n as u32).collect();
+            dissected(&graph, &graph, &all)
         } else {
-            minimum_degree(&graph, &all)
+            minimum_degree(&graph, &Halo::default())
         };
         Self::in_parts(&graph, &first)
     }
@@ -54,8 +51,8 @@ impl Order {
     ) -> Self {
         let before = n - last;
         let graph = Graph::new(before, edges);
-        let all: Vec<u32> = (0..before as u32).collect();
-        let mut order = Self::in_parts(&graph, &minimum_degree(&graph, &all));
+        let first = minimum_degree(&graph, &Halo::default());
+        let mut order = Self::in_parts(&graph, &first);
         order.unknowns.extend(before as u32..n as u32);
         if let Some(end) = order.levels.last_mut().and_then(|parts| parts.last_mut()) {
             *end = n;
@@ -80,76 +77,25 @@ impl Order {
     }
 }
 
-/// `region` by nested dissection.
-fn dissected(graph: &Graph, bisector: &mut Bisector, region: &[u32]) -> Vec<u32> {
-    if region.len() < SMALLEST_SEPARATED {
-        return minimum_degree(graph, region);
+/// The vertices of a part of a graph by nested dissection. `names` are those of the whole, ascending.
+fn dissected(whole: &Graph, part: &Graph, names: &[u32]) -> Vec<u32> {
+    let name = |&v: &u32| names[v as usize];
+    if names.len() < SMALLEST_SEPARATED {
+        let halo = Halo::new(whole, part, names);
+        return minimum_degree(part, &halo).iter().map(name).collect();
     }
-    let split = bisector.bisect(region);
+    let split = bisect(part);
     let [one, other] = &split.sides;
-    let (mut order, rest) = match region.len() < SMALLEST_SHARED {
-        true => (
-            dissected(graph, bisector, one),
-            dissected(graph, bisector, other),
-        ),
-        false => parallel::join(
-            || dissected(graph, bisector, one),
-            || dissected(graph, &mut Bisector::new(graph), other),
-        ),
+    let places = part.places(&[one, other]);
+    let dissected = |side: &[u32]| {
+        let names: Vec<u32> = side.iter().map(name).collect();
+        dissected(whole, &part.part(side, &places), &names)
+    };
+    let (mut order, rest) = match names.len() < SMALLEST_SHARED {
+        true => (dissected(one), dissected(other)),
+        false => parallel::join(|| dissected(one), || dissected(other)),
     };
     order.extend(rest);
-    order.extend(split.separator);
+    order.extend(split.separator.iter().map(name));
     order
-}
-
-/// The vertices of `region` (ascending) by approximate minimum degree in the graph between them and
-/// their neighbours outside, which are eliminated later: a clique of them has too high a degree to come
-/// first (Pellegrini, Roman & Amestoy 2000, by other means).
-fn minimum_degree(graph: &Graph, region: &[u32]) -> Vec<u32> {
-    let own = |v: u32| region.binary_search(&v).ok().map(|k| k as u32);
-    let mut halo: Vec<u32> = region.iter().flat_map(|&v| graph.of(v)).copied().collect();
-    halo.retain(|&w| own(w).is_none());
-    halo.sort_unstable();
-    halo.dedup();
-    let inner = region.len() as u32;
-    let n = region.len() + halo.len();
-    let mut edges = Vec::with_capacity(4 * n + halo.len() * halo.len() / 2);
-    for (&v, k) in region.iter().zip(0u32..) {
-        for &w in graph.of(v) {
-            match own(w) {
-                Some(place) if place < k => edges.push((k, place)),
-                Some(_) => {}
-                None => edges.extend(
-                    halo.binary_search(&w)
-                        .map(|place| (k, inner + place as u32)),
-                ),
-            }
-        }
-    }
-    edges.extend((0..halo.len() as u32).flat_map(|k| (0..k).map(move |l| (inner + k, inner + l))));
-    let assembly = SymmetricAssembly::new(n, edges.iter().copied());
-    let pattern = assembly.matrix().pattern();
-    let symbolic = SymbolicSparseColMatRef::new_checked(
-        n,
-        n,
-        pattern.major_offsets(),
-        None,
-        pattern.minor_indices(),
-    );
-    let mut forward = vec![0usize; n];
-    let mut inverse = vec![0usize; n];
-    let mut buffer = MemBuffer::new(amd::order_scratch::<usize>(n, pattern.nnz()));
-    let ordered = amd::order(
-        &mut forward,
-        &mut inverse,
-        symbolic,
-        amd::Control::default(),
-        MemStack::new(&mut buffer),
-    );
-    // only an index overflow can fail here, and 32-bit meshes cannot cause one
-    if ordered.is_err() {
-        return region.to_vec();
-    }
-    let own = forward.iter().filter_map(|&k| region.get(k).copied());
-    own.collect()
 }

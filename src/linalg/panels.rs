@@ -164,26 +164,6 @@ impl Panels {
         }));
     }
 
-    /// For each value, what `source(row, column)` says where that entry of L comes from, or `fill`.
-    pub fn map(&self, fill: u32, mut source: impl FnMut(u32, u32) -> u32) -> Vec<u32> {
-        let mut map = Vec::with_capacity(self.values);
-        for panel in &self.panels {
-            let columns = panel.first..panel.first + panel.width;
-            for j in columns.clone() {
-                map.extend((j..columns.end).map(|i| source(i, j)));
-            }
-            for four in &self.rows[panel.rows()] {
-                for j in columns.clone() {
-                    map.extend((0..ROWS).map(|k| match k {
-                        _ if k > 0 && four[k] == four[k - 1] => fill,
-                        _ => source(four[k], j),
-                    }));
-                }
-            }
-        }
-        map
-    }
-
     /// Calls `each(row, column, place in the values)` for every entry of L in the columns from `first` on.
     pub fn for_each_entry(&self, first: usize, mut each: impl FnMut(usize, usize, usize)) {
         let begin = self

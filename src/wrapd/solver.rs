@@ -101,16 +101,24 @@ impl Wrapd {
         let terms = problem.external.map(|external| {
             Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
-        let mut system = System::new(rest, &elimination, problem.external)?;
-        system
-            .factorize(terms.as_ref(), |_| shape.constants.rest_stiffness)
-            .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
-
+        let (system, (blocks, (corner_begin, corners))) = parallel::join(
+            || {
+                let mut system = System::new(rest, &elimination, problem.external)?;
+                system
+                    .factorize(terms.as_ref(), |_| shape.constants.rest_stiffness)
+                    .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
+                Ok::<_, BuildError>(system)
+            },
+            || {
+                let blocks = build_blocks(rest, &elimination.slot, &shape);
+                let corners = corner_lists(rest, &elimination.slot, elimination.free);
+                (blocks, corners)
+            },
+        );
+        let system = system?;
         let Elimination { slot, free, .. } = elimination;
-        let blocks = build_blocks(rest, &slot, &shape);
         // forces of the coupling, then those of the energy
         let corners_per_block = 2 * (rest.stretches + 1) * dimension * BLOCK;
-        let (corner_begin, corners) = corner_lists(rest, &slot, free);
         let mut x = vec![0.0; problem.start.len()];
         for (v, &s) in slot.iter().enumerate() {
             let s = s as usize * dimension;
