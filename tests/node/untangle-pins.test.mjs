@@ -121,12 +121,12 @@ describe('pins that move', () => {
   });
 
   it('that move while the last frame waits to be taken have the run go on', async () => {
-    const solver = await foldfree.untangle(await foldfree.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4) });
+    const [first, last] = [pressed({ rest, high }, 0.9), pressed({ rest, high }, 0.1)];
+    const solver = await foldfree.untangle(await foldfree.mesh(rest), { ...options, targets: first });
     const there = async ({ positions }) => {
       const result = await solver.result();
       return result.outcome.globallyInjective && [...high].every((v, i) => result.positions[3 * v + 1] === positions[3 * i + 1]);
     };
-    const [first, last] = [pressed({ rest, high }, 0.4), pressed({ rest, high }, 0.1)];
     let frames = 0;
     const end = await solver.run({
       onFrame: async () => {
@@ -150,7 +150,7 @@ describe('pins that move', () => {
     solver.free();
   });
 
-  it('every buffer of a step is moved, not copied', async () => {
+  it('come from a worker with all states of a step as they are here', async () => {
     const solver = await foldfree.untangle(await foldfree.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4), primary: true, trace: true });
     const here = core.untangle(core.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4), primary: true, trace: true });
     for await (const step of solver) {

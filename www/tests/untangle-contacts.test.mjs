@@ -119,7 +119,7 @@ describe('the session', () => {
       assert.equal(session.newest.status, 'converged');
       assert.deepEqual([session.result.outcome.globallyInjective, session.result.outcome.intersections], [true, 0]);
     }
-    assert.ok(reached > 1);
+    assert.ok(reached > 0);
     const { records: all } = session;
     for (let i = 1; i <= steps; i += 1) {
       const own = all.filter(({ iteration, part }) => iteration === i && part === 'quadratic');
@@ -314,16 +314,24 @@ describe('the page', () => {
 
   onPage('where there is no way what is held stays', { query: FLAT, viewport: WIDE }, async (page) => {
     await toTheEnd(page);
-    // one end right through the other body
+    // one end right through the other body, and beside it
     await page.evaluate(() => {
       const { mode } = globalThis.foldfreePage;
       const { hands } = mode;
       const [held, pulled] = hands.handles.groups;
-      pulled.at = pulled.at.map((x, i) => held.at[i % held.at.length] + [-2, 0, 0][i % 3]);
+      pulled.at = pulled.at.map((x, i) => held.at[i % held.at.length] + [-3, -0.5, 0][i % 3]);
       return mode.aim().then(() => mode.hurry());
     });
-    await page.waitForSelector('#notice:not([hidden])', { timeout: 120_000 });
-    assert.equal(await page.textContent('#notice-title'), 'No way was found');
+    const title = async () => {
+      await page.waitForSelector('#notice:not([hidden])', { timeout: 120_000 });
+      return page.textContent('#notice-title');
+    };
+    // should it come to the limit of steps it may try on
+    for (let k = 0; k < 4 && await title() === 'It has not arrived'; k += 1) {
+      await page.click('#notice-close');
+      await page.click('#play');
+    }
+    assert.equal(await title(), 'No way was found');
     assert.equal((await outcome(page)).intersections, 0, 'whatever happens');
     const { at, is } = await page.evaluate(() => {
       const { session, mode: { hands } } = globalThis.foldfreePage;
@@ -333,7 +341,7 @@ describe('the page', () => {
     assert.deepEqual(at, is, 'it stays where it got to');
   });
 
-  onPage('at the limit of steps it has not arrived, and Play goes on', { query: FLAT, viewport: WIDE }, async (page) => {
+  onPage('at the limit of steps it has not arrived, and Play goes on', { query: CUSHION, viewport: WIDE }, async (page) => {
     await page.evaluate(() => {
       const { mode } = globalThis.foldfreePage;
       const { foldfree } = mode.page;
@@ -342,11 +350,15 @@ describe('the page', () => {
       return mode.reset();
     });
     await toTheEnd(page);
+    assert.ok(await page.isHidden('#notice'), 'the first move takes one step');
+    await page.click('#further');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.newest.iteration === 2);
+    await atRest(page);
     assert.equal(await page.textContent('#notice-title'), 'It has not arrived');
     assert.match(await page.textContent('#notice-text'), /after 1 step\b/);
-    const targets = () => page.evaluate(() => [...globalThis.foldfreePage.mode.hands.handles.groups[1].at]);
+    const targets = () => page.evaluate(() => [...globalThis.foldfreePage.mode.hands.handles.groups[0].at]);
     const before = await targets();
-    for (let k = 2; await page.evaluate(() => globalThis.foldfreePage.session.newest.status !== 'converged'); k += 1) {
+    for (let k = 3; await page.evaluate(() => globalThis.foldfreePage.session.newest.status !== 'converged'); k += 1) {
       assert.ok(k < 60);
       await page.click('#play');
       await page.waitForFunction((count) => globalThis.foldfreePage.session.finished && globalThis.foldfreePage.session.newest.iteration === count, k);
