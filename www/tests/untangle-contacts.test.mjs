@@ -41,7 +41,7 @@ const atRest = async (page) => {
   await page.waitForSelector('#play:not(.playing)');
 };
 const toTheEnd = async (page) => {
-  await page.selectOption('#pace', '0');
+  await page.evaluate(() => { document.getElementById('pace').value = '0'; }); // phones do not show it
   await page.click('#unfold');
   await atRest(page);
 };
@@ -243,18 +243,21 @@ describe('the page', () => {
     // from nearer fewer are in one place
     const board = await page.locator('#canvas').boundingBox();
     await page.mouse.move(board.x + 0.2 * board.width, board.y + 0.3 * board.height);
-    await page.mouse.wheel(0, 600);
+    await page.mouse.wheel(0, -600);
     await statusText(page);
     const nearer = await drawn();
     assert.deepEqual(nearer.slice(0, 2), [corners, edges]);
     assert.ok(nearer[2] + nearer[3] > diamonds + crosses, `${nearer}`);
-    // what is handed out has none, and asks for no room; what the primary solver has is worked on no more
-    for (const state of ['result', 'primary']) {
+    // what is handed out has none, and asks for no room; once it is polished, so has the primary solver's
+    const outcomeOf = all.findIndex(({ part }, i) => part === 'outcome' && i > most);
+    for (const [state, part] of [['result', most], ['primary', outcomeOf]]) {
+      await page.fill('#history', String(part));
       await page.click(`[data-state="${state}"]`);
       assert.doesNotMatch(await statusText(page), /cross|contact|below/);
       assert.deepEqual(await drawn(), [0, 0, 0, 0]);
     }
     await page.click('[data-state="trial"]');
+    await page.fill('#history', String(most));
     await statusText(page);
     assert.deepEqual(await drawn(), nearer);
     // iterations of the quadratic problem, one by one
@@ -367,6 +370,32 @@ describe('the page', () => {
     }
     assert.ok(await page.isHidden('#notice'));
     assert.deepEqual(await outcome(page).then(({ globallyInjective, intersections }) => [globallyInjective, intersections]), [true, 0]);
+  });
+
+  onPage('a drag beside the squares turns the view, and moves nothing', { query: CUSHION, viewport: WIDE }, async (page) => {
+    const places = () => page.evaluate(() => {
+      const { bench, session } = globalThis.foldfreePage;
+      return Array.from({ length: session.body.positions.length / 3 }, (_, v) => [...bench.placeOf(v)]);
+    });
+    const [box, before] = [await page.locator('#canvas').boundingBox(), await places()];
+    const [x, y] = before[0];
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    for (let k = 1; k <= 4; k += 1) {
+      await page.mouse.move(box.x + x + 12 * k, box.y + y + 5 * k);
+      await statusText(page); // the view is turned frame by frame
+    }
+    await page.mouse.up();
+    await statusText(page);
+    const far = Math.max(...(await places()).map((p, v) => Math.hypot(p[0] - before[v][0], p[1] - before[v][1])));
+    assert.ok(far > 15, `${far}`);
+    assert.equal((await records(page)).length, 1);
+    assert.ok(await page.isHidden('#notice'));
+    const { length, pulled } = await page.evaluate(() => {
+      const { handles } = globalThis.foldfreePage.mode.hands;
+      return { length: handles.groups.length, pulled: handles.dragging };
+    });
+    assert.deepEqual([length, Boolean(pulled)], [1, false]);
   });
 
   onPage('colours on the outside are those a person chose, while bodies are of one kind', { query: CUSHION, viewport: WIDE }, async (page) => {

@@ -431,9 +431,11 @@ impl Bench {
         self.run.method.starts_with("lim")
     }
 
-    /// Whether what is on show is an untangling.
+    /// Whether what is on show is an untangling, also while a view has taken its body to draw it. Maps of surfaces have the
+    /// same method, but neither.
     pub fn is_untangling(&self) -> bool {
-        self.run.method == "gini" && self.body.is_some()
+        let parts = || self.record().is_some_and(|r| r.moment.is_some());
+        self.run.method == "gini" && (self.body.is_some() || parts())
     }
 
     /// What things are called on this bench.
