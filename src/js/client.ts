@@ -85,8 +85,10 @@ export class Client {
     return this.#send(call, args, transfer);
   }
 
-  /** A run: `listener` gets its frames, one at a time. */
-  async run(args: Calls['run'][0], generation: number, listener: AnyListener | undefined): Promise<AnyFrame> {
+  /** A run: `listener` gets its frames, one at a time; `ended` the last, before the listener is done with those before. */
+  async run(
+    args: Calls['run'][0], generation: number, listener: AnyListener | undefined, ended: (last: AnyFrame) => void,
+  ): Promise<AnyFrame> {
     await this.start();
     this.#mustBe(generation);
     if (listener) this.#runs.set(args.run, listener);
@@ -94,6 +96,7 @@ export class Client {
       const sent = this.#send('run', args, []);
       if (this.#cancelled.has(args.run)) this.#port?.post({ cancel: args.run });
       const last = await sent;
+      ended(last);
       await this.#listening.get(args.run);
       return last;
     } finally {

@@ -80,9 +80,11 @@ export abstract class Stepper<F extends Progress, R extends Progress = StepRepor
     try {
       const args = { solver: this.#id, run, maxIterations, minInterval };
       const listener = onFrame as AnyListener | undefined;
-      const last = (await this.#wait(this.#client.run(args, this.#generation, listener))) as unknown as F;
-      this.#status = last.status === 'cancelled' ? 'running' : last.status;
-      return last;
+      // targets that come while a frame is still being taken wake it again
+      const ended = ({ status }: { status: Progress['status'] }) => {
+        this.#status = status === 'cancelled' ? 'running' : status;
+      };
+      return (await this.#wait(this.#client.run(args, this.#generation, listener, ended))) as unknown as F;
     } finally {
       this.#run = undefined;
       this.#signal?.removeEventListener('abort', stop);

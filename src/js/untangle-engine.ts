@@ -20,7 +20,7 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
   frames: FramePrecision;
   readonly #handle: Bindings.WasmUntangling;
   readonly #primary: boolean;
-  readonly #trace: boolean;
+  readonly #trace: boolean | 'polisher';
 
   /** @internal */
   static make<C extends SolidCertificate | Certificate>(
@@ -40,12 +40,12 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
     return new CoreUntangling(handle, frames, primary, trace);
   }
 
-  private constructor(handle: Bindings.WasmUntangling, frames: FramePrecision, primary: boolean, trace: boolean) {
+  private constructor(handle: Bindings.WasmUntangling, frames: FramePrecision, primary: boolean, trace: boolean | 'polisher') {
     this.#handle = handle;
     this.frames = frames;
     this.#primary = primary;
     this.#trace = trace;
-    handle.setTrace(trace);
+    handle.setTrace(Boolean(trace));
     this.notes = handle.notes;
     this.flowed = handle.flowed;
     this.setupSeconds = handle.setupSeconds;
@@ -121,7 +121,7 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
     };
   }
 
-  #states(): { trace: PolishState[]; quadratic: TraceState[] } {
+  #states(): { trace: PolishState[]; quadratic?: TraceState[] } {
     const handle = this.#handle;
     const [first = 0, second = 0] = handle.traceLengths;
     const state = (k: number): TraceState => {
@@ -131,7 +131,7 @@ export class CoreUntangling<C extends SolidCertificate | Certificate = SolidCert
       };
     };
     return {
-      quadratic: Array.from({ length: first }, (_, k) => state(k)),
+      ...(this.#trace === true && { quadratic: Array.from({ length: first }, (_, k) => state(k)) }),
       trace: Array.from({ length: second }, (_, k) => ({ ...state(first + k), zones: handle.traceZones(first + k) })),
     };
   }

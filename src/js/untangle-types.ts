@@ -8,8 +8,11 @@ export type { Flowed, GiniStep, Outcome, PolishStep, UntangleEnergy, UntangleSet
 export type UntangleOptions = Partial<UntangleSettings> & Handles & {
   /** Send x̄, the primary solver's state, with each step (default false). */
   primary?: boolean;
-  /** Send the states that the quadratic problem and the polisher went through with each step (default false). */
-  trace?: boolean;
+  /**
+   * Send the states that the quadratic problem and the polisher went through with each step (default false); `'polisher'`:
+   * only the latter, as up to fifty states of a large body are much memory.
+   */
+  trace?: boolean | 'polisher';
 };
 
 /** Pairs of parts of the boundary that must not pass through each other. */
@@ -19,8 +22,8 @@ export interface Contacts {
   /** 1 of two edges, 0 of a vertex and a face or edge. */
   edges: Uint8Array;
   /**
-   * 1 where, in the quadratic problem, the multiplier is not 0; in the polisher, where the two collide on the way from x to
-   * x̂. Where it is 0 they are proximal: they did collide before.
+   * In `quadratic`: 1 where the multiplier is above 0, also of contacts that are proximal. In `trace`: 1 where the two still
+   * collide on the way from x to x̂; 0 where they are proximal: they did collide before, and stay among the constraints.
    */
   active: Uint8Array;
   /** In the polisher: the zone of violated constraints that each is in, the first being 1; 0: in none. */
@@ -54,7 +57,7 @@ export interface UntangleStep extends Frame {
   /** With `trace`: x̂ before each iteration of the polisher, and after the last. The first is x̄ after the quadratic problem. */
   trace?: PolishState[];
   /**
-   * With `trace`: x̄ of the quadratic problem with the multipliers of the step before, and after each iteration of L-BFGS-B;
+   * With `trace: true`: x̄ of the quadratic problem with the multipliers of the step before, and after each iteration of L-BFGS-B;
    * the last is the first of the polisher.
    */
   quadratic?: TraceState[];

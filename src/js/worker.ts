@@ -67,16 +67,18 @@ async function compile(url: URL, progress: (loaded: number, total: number) => vo
 
 /** Buffers of an answer that are moved, not copied. */
 function transferables(value: unknown): Transferable[] {
-  const found: Transferable[] = [];
+  const found = new Set<ArrayBuffer>(); // none may be named twice
   const visit = (inner: unknown) => {
     if (ArrayBuffer.isView(inner)) {
-      if (inner.buffer instanceof ArrayBuffer) found.push(inner.buffer);
+      if (inner.buffer instanceof ArrayBuffer) found.add(inner.buffer);
+    } else if (Array.isArray(inner)) {
+      inner.forEach(visit);
     } else if (inner && Object.getPrototypeOf(inner) === Object.prototype) {
       Object.values(inner).forEach(visit);
     }
   };
   visit(value);
-  return found;
+  return [...found];
 }
 
 /** Calls whose answers stay here, too. */
@@ -225,28 +227,35 @@ function serve(port: Port): void {
         // a rounding may take microseconds, less than it takes to listen
         const listens = solver instanceof CoreMixedInteger ? 4 : 0;
         let listened = performance.now();
-        for (let count = 0; count < maxIterations; count++) {
-          const report = solver.advance();
-          reports.push(report);
-          if (run.acknowledged && performance.now() - sent >= minInterval) {
-            run.acknowledged = false;
-            sent = performance.now();
-            const frame = solver.frame();
-            port.postMessage({ run: runId, frame, reports }, transferables(frame));
-            reports = [];
+        let last: AnyFrame;
+        for (let count = 0; ;) {
+          while (count < maxIterations) {
+            const report = solver.advance();
+            count += 1;
+            reports.push(report);
+            if (run.acknowledged && performance.now() - sent >= minInterval) {
+              run.acknowledged = false;
+              sent = performance.now();
+              const frame = solver.frame();
+              port.postMessage({ run: runId, frame, reports }, transferables(frame));
+              reports = [];
+            }
+            if (report.status !== 'running') break;
+            if (performance.now() - listened < listens) continue;
+            await breathe();
+            listened = performance.now();
+            if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
+            if (run.cancelled) break;
           }
-          if (report.status !== 'running') break;
-          if (performance.now() - listened < listens) continue;
-          await breathe();
-          listened = performance.now();
-          if (!solvers.has(id)) throw new FoldfreeError('freed', 'this solver was freed');
-          if (run.cancelled) break;
+          last = solver.frame();
+          if (!reports.length || run.acknowledged) break;
+          await new Promise<void>((resolve) => (run.taken = resolve));
+          if (!solvers.has(id)) break;
+          // targets that came meanwhile have it go on
+          last = solver.frame();
+          if (last.status !== 'running' || run.cancelled || count >= maxIterations) break;
         }
-        const last: AnyFrame = solver.frame();
-        if (reports.length) {
-          if (!run.acknowledged) await new Promise<void>((resolve) => (run.taken = resolve));
-          port.postMessage({ run: runId, frame: last, reports });
-        }
+        if (reports.length) port.postMessage({ run: runId, frame: last, reports });
         return run.cancelled && last.status === 'running' ? { ...last, status: 'cancelled' } : last;
       } finally {
         runs.delete(runId);

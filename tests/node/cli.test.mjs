@@ -311,6 +311,33 @@ describe('the command line untangles', () => {
     assert.match(readFileSync(file('free.off'), 'utf8'), /^1\.4 1\.3 0$/m);
   });
 
+  it('minimizes what is free, and names the same options whether overlap counts or not', () => {
+    const common = ['untangle', '--rest', file('grid.obj'), '--init', file('tangled.obj'), '--pins', file('rim.txt'), '--quiet'];
+    const found = (...more) => {
+      const ran = foldfree(...common, ...more, '--report', file('m.json'));
+      assert.equal(ran.status, 0, ran.stderr);
+      return json('m.json');
+    };
+    const dirichlet = ['--energy', 'symmetric-dirichlet'];
+    const [free, least] = [found(...dirichlet), found(...dirichlet, '--minimize', '--tolerance', '1e-9', '--out', file('least.obj'))];
+    assert.deepEqual([free.minimized_to, least.minimized_to, least.status], [undefined, 1e-9, 'converged']);
+    for (const { outcome, certificate } of [free, least]) {
+      assert.deepEqual([outcome.not_positive, certificate.inverted, certificate.degenerate], [[], [], []]);
+      assert.ok(outcome.smallest_measure > 0);
+    }
+    assert.equal(foldfree('check', file('least.obj'), '--rest', file('grid.obj'), '-q').status, 0);
+    const [before, after_] = [free, least].map(({ iterations }) => iterations.at(-1));
+    assert.ok(after_.iteration > before.iteration && after_.energy < before.energy, `${after_.energy}, ${before.energy}`);
+    assert.ok(before.gini && !after_.gini, 'the last steps are Newton’s');
+    writeFileSync(file('calm.obj'), grid(rest));
+    const calm = ['untangle', '--rest', file('grid.obj'), '--init', file('calm.obj'), '--quiet', '--report', file('o.json')];
+    const options = (...more) => (assert.equal(foldfree(...calm, ...more).status, 0), Object.keys(json('o.json').options));
+    assert.deepEqual(options('--overlap'), options());
+    const refused = foldfree(...common, '--minimize');
+    assert.equal(refused.status, 1);
+    assert.match(refused.stderr, /arap/);
+  });
+
   it('solids', () => {
     assert.equal(foldfree('generate', 'box', '--tetrahedra', '500', '--out', file('box.node')).status, 0);
     let state = 8;

@@ -119,4 +119,47 @@ describe('pins that move', () => {
     await assert.rejects(solver.movePins({ vertices: Uint32Array.of(n + 1), positions: new Float64Array(3) }), { code: 'invalid-option' });
     solver.free();
   });
+
+  it('that move while the last frame waits to be taken have the run go on', async () => {
+    const [first, last] = [pressed({ rest, high }, 0.9), pressed({ rest, high }, 0.1)];
+    const solver = await foldfree.untangle(await foldfree.mesh(rest), { ...options, targets: first });
+    const there = async ({ positions }) => {
+      const result = await solver.result();
+      return result.outcome.globallyInjective && [...high].every((v, i) => result.positions[3 * v + 1] === positions[3 * i + 1]);
+    };
+    let frames = 0;
+    const end = await solver.run({
+      onFrame: async () => {
+        frames += 1;
+        if (frames > 1) return;
+        // no other frame is sent until this one was taken: the solver comes to its end, and is told to go on
+        while (!(await there(first))) await new Promise((resolve) => { setTimeout(resolve, 5); });
+        await solver.movePins(last);
+      },
+    });
+    assert.ok(frames > 1, 'the end is a frame of its own');
+    assert.deepEqual([end.status, solver.status], ['converged', 'converged']);
+    assert.ok(await there(last));
+    // and those that move while the last one is taken wake the solver, whose run is over
+    await solver.movePins(pressed({ rest, high }, 0.12));
+    let told = false;
+    await solver.run({ onFrame: async ({ status }) => { if (status === 'converged') told = (await solver.movePins(first), true); } });
+    assert.deepEqual([told, solver.status], [true, 'running']);
+    await solver.run();
+    assert.ok(await there(first));
+    solver.free();
+  });
+
+  it('come from a worker with all states of a step as they are here', async () => {
+    const solver = await foldfree.untangle(await foldfree.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4), primary: true, trace: true });
+    const here = core.untangle(core.mesh(rest), { ...options, targets: pressed({ rest, high }, 0.4), primary: true, trace: true });
+    for await (const step of solver) {
+      const same = here.step();
+      assert.deepEqual(step.trace, same.trace);
+      assert.deepEqual(step.quadratic, same.quadratic);
+      assert.deepEqual(step.positions, same.positions);
+    }
+    assert.ok((await solver.result()).outcome.globallyInjective);
+    solver.free();
+  });
 });

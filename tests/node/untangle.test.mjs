@@ -111,12 +111,18 @@ describe('untangling in this thread', () => {
         assert.ok(trace[k].zones.filter((zone) => zone > 0).length >= violated && violated >= wrong);
       });
       polished += gini.polish.length;
-      if (gini.accepted) assert.deepEqual(trace.at(-1).positions, positions);
+      assert.ok(gini.accepted || !gini.reached, 'where it got to it has moved');
+      if (gini.reached) assert.deepEqual(trace.at(-1).positions, positions);
       assert.equal(trace[0].zones.length, rest.indices.length / 3);
       assert.deepEqual(primary, solver.primaryPositions());
       assert.ok(step.lim === undefined);
     }
     assert.ok(polished > 0);
+    // of the polisher alone
+    const few = core.untangle(core.mesh(rest), { pins, start: shuffled, trace: 'polisher' });
+    assert.ok(!('quadratic' in few.start) && few.start.trace.length === 0);
+    const one = few.step();
+    assert.ok(!('quadratic' in one) && one.trace.length === one.gini.polish.length + 1);
     // single precision, and no more than what was asked for
     const plain = core.untangle(core.mesh(rest), { pins, start: shuffled, frames: 'f32' });
     const step = plain.step();
@@ -324,6 +330,9 @@ describe('untangling in this thread', () => {
     fails('invalid-argument', () => mesh.write('docx'), 'obj');
     const { energy, maxQpIterations, maxPolishIterations, offset, maxIterations } = core.defaultUntangleOptions();
     assert.deepEqual([energy, maxQpIterations, maxPolishIterations, offset, maxIterations], ['arap', 50, 30, 0.1, 100]);
+    const ofOverlap = ({ overlap, targetStiffness, settle }) => ({ overlap, targetStiffness, settle });
+    assert.deepEqual(ofOverlap(core.defaultUntangleOptions(true)), { overlap: true, targetStiffness: 1e-5, settle: 1e-3 });
+    assert.deepEqual(ofOverlap(core.defaultUntangleOptions()), { overlap: false, targetStiffness: 1, settle: 0 });
   });
 });
 

@@ -1,5 +1,6 @@
 // The state of the page in the address, so that a link opens the same bench.
 import { COMPARABLE, FEWEST, MOST } from './compare-session.js';
+import { MOST_ELEMENTS, keepsApart } from './contact-problems.js';
 import { isFigure } from './figures.js';
 import { LIM_ENERGIES, MATERIALS } from './materials.js';
 import { WINDOW } from './round-problems.js';
@@ -123,6 +124,8 @@ export function readAddress(mode = modeOf(), search = location.search) {
     state.method = 'lim';
     if (!['held', 'drag'].includes(state.preset)) state.preset = 'drag';
   }
+  // Bodies that are kept apart are small.
+  if (mode === 'untangle' && keepsApart(state.body)) state.size = Math.min(state.size, MOST_ELEMENTS);
   if (mode === 'untangle' && isFlat(state.body) && !ENERGIES[state.energy].planar) state.energy = 'arap';
   const steps = Number(asked.get(STEPS[mode]));
   if (steps > 0 && steps <= MOST_STEPS) state.steps = Math.round(steps);

@@ -191,11 +191,11 @@ const PARTS = ['start', 'local', 'quadratic', 'polish', 'outcome'];
 /** Which part of which step of an untangling this is, and what is wrong then. */
 function moment({ part, k, counts, violated = -1, meeting = -1, zones, gini }) {
   const {
-    qpIterations = 0, constraints = 0, active = 0, accepted = false, leastOffset = 0, firstOffset = 0, reducedOffsets = 0, smallestMeasure = NaN,
+    qpIterations = 0, constraints = 0, active = 0, accepted = false, reached = false, leastOffset = 0, firstOffset = 0, reducedOffsets = 0, smallestMeasure = NaN,
   } = gini ?? {};
   return [
-    PARTS.indexOf(part), k, gini?.polish.length ?? 0, ...counts, violated, zones, qpIterations, constraints, active, accepted ? 1 : 0, leastOffset, firstOffset,
-    reducedOffsets, smallestMeasure, meeting,
+    PARTS.indexOf(part), k, gini?.polish.length ?? 0, ...counts, violated, zones, qpIterations, constraints, active, accepted ? 1 : 0, reached ? 1 : 0, leastOffset,
+    firstOffset, reducedOffsets, smallestMeasure, meeting,
   ];
 }
 

@@ -45,7 +45,7 @@ const flat = ({ positions, simplices }) => ({ positions: Float64Array.from(posit
 /** How fine a lattice of `cells` cells is to be for about so many elements, `each` a cell. */
 const fineness = (size, cells, each) => {
   const dimension = each === 2 ? 2 : 3;
-  return Math.max(1, Math.round((Math.min(size, MOST_ELEMENTS) / (cells * each)) ** (1 / dimension) - 0.2));
+  return Math.max(1, Math.round((Math.max(1, Math.min(size, MOST_ELEMENTS)) / (cells * each)) ** (1 / dimension) - 0.2));
 };
 
 /** Elements of these problems at most: contacts are looked for again and again. */

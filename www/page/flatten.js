@@ -119,6 +119,8 @@ export class Flatten extends Mode {
       this.show(0);
       this.#facts();
       this.clearNotice();
+      const other = session.problem.notes.find((note) => note.startsWith('the boundary of the start meets itself'));
+      if (other) this.notice('Another start', describe(other), { plain: true });
       this.remember();
       this.invite();
       this.#good = { ...asked };

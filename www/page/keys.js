@@ -1,7 +1,7 @@
 // The keyboard: one key, one act, never while a person types or chooses.
 
-/** Calls `acts[key]` for keys pressed; `Shift+` is spelled out for the arrow keys. */
-export function listenToKeys(acts) {
+/** Calls `acts[key]` for keys pressed; `Shift+` is spelled out for the arrow keys. Those of `once` do not repeat. */
+export function listenToKeys(acts, once = []) {
   window.addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
     const target = event.target;
@@ -18,6 +18,6 @@ export function listenToKeys(acts) {
     const act = acts[name];
     if (!act) return;
     event.preventDefault();
-    act();
+    if (!event.repeat || !once.includes(name)) act();
   }, { capture: true });
 }

@@ -164,7 +164,7 @@ function connect() {
     h: hand('next'), j: hand('nudge', -1, 0), l: hand('nudge', 1, 0), i: hand('nudge', 0, 1), k: hand('nudge', 0, -1),
     u: hand('twist', -1), y: hand('twist', 1), b: hand('nextPlace'), n: hand('pinPlace'), Delete: hand('release', false), Backspace: hand('release', false),
     ...Object.fromEntries(digits),
-  });
+  }, ['g']);
 }
 
 function help() {

@@ -255,8 +255,8 @@ export class Mode {
     this.#film = true;
     this.setPlaying(true);
     while (mayGo() && this.shown < this.records.length - 1) {
-      const wait = (this.beat * 1000) / (Number($('pace').value) || 60);
       this.show(this.shown + 1);
+      const wait = (this.beat * 1000) / (Number($('pace').value) || 60);
       const until = performance.now() + wait;
       do await nextFrame(); while (mayGo() && performance.now() < until);
     }

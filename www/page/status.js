@@ -21,7 +21,7 @@ export function drawStatus(mode) {
   const time = rate ? `${Math.round(rate)} steps a second` : `${number(stepMilliseconds(records, shown), 2)} ms`;
   const parts = [
     part('quiet', record.where ?? `iteration ${record.iteration}${newest > shown ? ` of ${records[newest].iteration}` : ''}`),
-    part(record.where ? 'detail' : '', ...(record.lead ? [record.lead, part('lead', ' is lowest,'), ' '] : []), record.energyText ?? `energy ${number(record.energy)}`),
+    ...(record.energyText === '' ? [] : [part(record.where ? 'detail' : '', ...(record.lead ? [record.lead, part('lead', ' is lowest,'), ' '] : []), record.energyText ?? `energy ${number(record.energy)}`)]),
     record.fate
       ? part(`inverted ${record.fate.good ? 'good' : ''}`, record.fate.text)
       : part(`inverted ${record.inverted > 0 ? 'bad' : 'good'}`, ...hatch, `${whole(record.inverted)} inverted`),

@@ -6,6 +6,10 @@ import { apartOf, generate, invertedOf, problemOf, readPins } from './untangle-p
 const SURFACES = ['obj', 'off', 'ply', 'stl', 'mesh', 'msh', 'vtk'];
 const SOLIDS = ['mesh', 'msh', 'vtk', 'node'];
 
+/** Vertices of a body of whose quadratic problem every iteration is shown: there are fifty to a step. */
+export const MOST_TRACED = 20_000;
+const UNTRACED = 'of so large a body the iterations of the quadratic problem are not shown, only where they lead';
+
 /**
  * A body on the bench and its solver. A step of the solver comes as the parts it consists of, one after the other: local
  * step, quadratic problem, the iterations of the polisher, outcome. `records` has the numbers of all of them.
@@ -19,7 +23,8 @@ export class UntangleSession {
   #reports = []; // of the steps
   #targets; // where what is held is to go, when the solver does not know yet
   #sending;
-  #moved = false; // whether the solver was told of other targets since its newest step began
+  #moves = 0; // how often the solver was told of other targets
+  #known = 0; // how many of them its newest step knew
   #count = 0; // steps of the solver
   #shownResult;
   #last; // { result, primary, report, folded }: what the newest step led to; `folded`: inverted elements of `primary`, if known
@@ -27,6 +32,8 @@ export class UntangleSession {
   records = [];
   /** Name, settings and facts of the problem. */
   problem = undefined;
+  /** Steps of the solver since what is held moved, or the start. */
+  stepsOfMove = 0;
   /** What is known of the end: certificate, outcome, obstacles. */
   result = undefined;
 
@@ -53,7 +60,7 @@ export class UntangleSession {
 
   /** Whether all parts of the last step were shown. */
   get finished() {
-    return this.#queue.length === 0 && !this.#moved && this.#targets === undefined && this.newest !== undefined && this.newest.status !== 'running';
+    return this.#queue.length === 0 && this.#moves === this.#known && this.#targets === undefined && this.newest !== undefined && this.newest.status !== 'running';
   }
 
   /** Whether bodies are kept from passing through each other and themselves. */
@@ -118,8 +125,9 @@ export class UntangleSession {
     try {
       made = !source.files && keepsApart(source.body) ? apartOf(body, source.body) : problemOf(body, { held, start }, given);
       const { groups, ...handles } = made;
+      const large = body.positions.length > 3 * MOST_TRACED;
       // the first state in which nothing crosses will do: a person may want to go on from there
-      solver = await this.#foldfree.untangle(body, { ...handles, ...(groups && { settle: 0 }), energy, primary: true, trace: true });
+      solver = await this.#foldfree.untangle(body, { ...handles, ...(groups && { settle: 0 }), energy, primary: true, trace: large ? 'polisher' : true });
       known = await solver.result();
     } catch (error) {
       solver?.free();
@@ -136,10 +144,10 @@ export class UntangleSession {
     [this.#body, this.#solver] = [body, solver];
     this.problem = {
       source, given, ...made, settings: { held, start, energy },
-      notes: [...body.notes, ...solver.notes], setupSeconds: solver.setupSeconds,
+      notes: [...body.notes, ...solver.notes, ...(body.positions.length > 3 * MOST_TRACED ? [UNTRACED] : [])], setupSeconds: solver.setupSeconds,
     };
     this.result = undefined;
-    [this.#queue, this.#reports, this.#count, this.#targets, this.#moved] = [[], [], 0, undefined, false];
+    [this.#queue, this.#reports, this.#count, this.#targets, this.#moves, this.#known] = [[], [], 0, undefined, 0, 0];
     const { positions } = solver.start;
     // of what is flat floating point cannot tell: the start is counted exactly
     const wrong = known.outcome.notPositive.length;
@@ -157,15 +165,17 @@ export class UntangleSession {
     if (!solver || this.finished) return undefined;
     if (this.#queue.length === 0) {
       await this.#sending?.catch(() => {}); // whoever sent it hears of that
-      this.#moved = false;
+      const known = this.#moves;
       const step = await solver.step();
       if (solver !== this.#solver) return undefined;
+      this.stepsOfMove = step.iteration;
       step.iteration = ++this.#count; // the solver's own count begins anew when what is held moves
       if (step.status !== 'running') {
         const result = await solver.result();
         if (solver !== this.#solver) return undefined;
-        if (!this.#moved) this.result = result;
+        if (known === this.#moves) this.result = result;
       }
+      this.#known = known;
       this.#reports.push(numbersOf(step));
       this.#queue = this.#partsOf(step);
     }
@@ -196,7 +206,8 @@ export class UntangleSession {
         }
         if (solver !== this.#solver) continue; // another problem has come
         if (targets === this.#targets) this.#targets = undefined;
-        [this.#moved, this.result] = [true, undefined];
+        this.#moves += 1;
+        this.result = undefined;
       }
     } finally {
       this.#sending = undefined;
@@ -206,7 +217,7 @@ export class UntangleSession {
   /** The parts of a step. What is handed out changes with the last of them. */
   #partsOf(step) {
     const { result, primary, report: before, folded = invertedOf(this.#body, primary) } = this.#last;
-    const { gini, trace, quadratic } = step;
+    const { gini, trace, quadratic = [] } = step;
     const report = numbersOf(step);
     // Seconds of solving: the solver's own clock also runs while it waits for the next step.
     report.seconds = before.seconds + step.phases.reduce((sum, phase) => sum + phase.milliseconds, 0) / 1000;
@@ -232,7 +243,7 @@ export class UntangleSession {
     const last = trace.at(-1);
     this.#last = { result: step.positions, primary: step.primary, report };
     parts.push(this.#part('outcome', {
-      ...common, gini, k: of, report, trial: last.positions, zones: gini.accepted ? undefined : last.zones, ...wrongIn(last),
+      ...common, gini, k: of, report, trial: last.positions, zones: gini.reached ? undefined : last.zones, ...wrongIn(last),
       inverted: [last.inverted, report.inverted, polished.inverted], primary: polished.positions, result: step.positions,
     }));
     // until then what is handed out is what it was

@@ -24,7 +24,7 @@ const PARTS = {
   local: () => 'local step',
   quadratic: ({ k, of }) => (of > 0 ? `QP ${k} of ${of}` : 'quadratic problem'),
   polish: ({ k, of }) => `polisher ${k} of ${of}`,
-  outcome: ({ gini }) => (gini.accepted ? 'handed out' : 'not handed out'),
+  outcome: ({ gini }) => (gini.reached ? 'handed out' : gini.accepted ? 'x went a part of the way' : 'not handed out'),
 };
 
 export class Untangle extends Mode {
@@ -37,6 +37,7 @@ export class Untangle extends Mode {
   source = { body: this.wanted.body, size: this.wanted.size };
   controls = new UntangleControls(this);
   hands = new Movers(this);
+  #tinted = false; // whether the body on the bench came with colours on its outside
   #moves = 1; // of what is held, the first included
   #good = { ...this.wanted };
   #relative = (record) => record; // a record without units
@@ -128,8 +129,10 @@ export class Untangle extends Mode {
     const { body, planar } = this.session;
     if (planar) this.bench.planar(body);
     else this.bench.solid(body);
-    // zones of contacts are on the outside
-    this.bench.tinted(this.apart !== undefined);
+    // zones of contacts are on the outside; of bodies of one kind it is as a person had it
+    const apart = this.apart !== undefined;
+    if (apart !== this.#tinted) this.bench.tinted(apart);
+    this.#tinted = apart;
     const measure = planar ? areaOf(body.positions, body.indices) : volumeOf(body.positions, body.tetrahedra);
     this.#relative = relativeTo(1, Math.abs(measure));
   }
@@ -174,14 +177,16 @@ export class Untangle extends Mode {
     const name = PARTS[record.part](record);
     const where = record.part === 'start' ? name : `step ${record.iteration} · ${name}`;
     const { meeting, contacts } = record;
-    const below = `${whole(violated ?? 0)} below η`;
-    const touching = meeting === undefined ? undefined : touchingWords(meeting, contacts);
+    // x̂ and x̄ cross and ask for more room, what is handed out does not
+    const own = worksOn(record, this.wanted.state);
+    const below = own && violated !== undefined ? `${whole(violated)} below η` : undefined;
+    const touching = own && meeting !== undefined ? touchingWords(meeting, contacts) : undefined;
     const zoned = zones > 0 ? ` in ${whole(zones)} ${zones === 1 ? 'zone' : 'zones'}` : '';
     const { energy } = this.#relative(record);
     return {
       ...record, inverted, where, touching,
-      energyText: violated === undefined ? `energy ${number(energy)}` : below,
-      spoken: `${where.replace(' · ', ', ').replace('QP', 'quadratic problem')}, ${violated === undefined ? '' : `${below}${zoned}, `}${inverted} inverted${touching ? `, ${touching.join(', ')}` : ''}`,
+      energyText: below ?? (own || this.wanted.state === 'result' ? `energy ${number(energy)}` : ''),
+      spoken: `${where.replace(' · ', ', ').replace('QP', 'quadratic problem')}, ${below ? `${below}${zoned}, ` : ''}${inverted} inverted${touching ? `, ${touching.join(', ')}` : ''}`,
     };
   }
 
@@ -198,6 +203,10 @@ export class Untangle extends Mode {
   ended() {
     this.finish();
     const { obstacles, outcome } = this.session.result;
+    if (this.#late) {
+      const { stepsOfMove: count } = this.session;
+      return this.notice('It has not arrived', `What is held is not yet where it is to go after ${count} ${count === 1 ? 'step' : 'steps'}. Play goes on.`, { plain: true });
+    }
     if (this.mayHold && this.session.newest.status !== 'converged' && outcome.notPositive.length === 0) {
       this.#stay();
       return this.notice('No way was found', 'What is held stays where it got to. Move it elsewhere, or begin anew.', { plain: true });
@@ -208,6 +217,17 @@ export class Untangle extends Mode {
 
   finish() {
     this.#facts();
+  }
+
+  /** Whether it ended only because it may make so many steps at once. */
+  get #late() {
+    const { session } = this;
+    return this.mayHold && session.finished && session.newest.status === 'max-iterations' && session.result.outcome.notPositive.length === 0;
+  }
+
+  async play() {
+    if (this.active && !this.playing && this.session?.ready && this.#late) void this.aim(); // its steps wait for that
+    await super.play();
   }
 
   /** What is held is to stay where it is. */
@@ -232,8 +252,7 @@ export class Untangle extends Mode {
       ...problem.notes.map((text, i) => [i === 0 ? 'notes' : '', text]),
     ];
     if (session.finished && result) {
-      const how = newest.status === 'stalled' ? 'no better state found' : ending(newest);
-      pairs.push(['ended', newest.iteration === 0 ? 'before the first step' : `${how} after ${newest.iteration} ${newest.iteration === 1 ? 'step' : 'steps'}`]);
+      pairs.push(['ended', newest.iteration === 0 ? 'before the first step' : `${ending(newest)} after ${newest.iteration} ${newest.iteration === 1 ? 'step' : 'steps'}`]);
       pairs.push(...proofOf(result.certificate, planar));
       const { globallyInjective } = result.outcome;
       if (globallyInjective !== undefined && !planar) pairs.push(['', globallyInjective ? 'nothing in anything else (exact)' : 'parts of it lie in each other (exact)']);
@@ -283,7 +302,7 @@ export class Untangle extends Mode {
 
   /** What is held goes on: the next of its moves. */
   async further() {
-    if (!this.whenReady(() => this.further()) || !this.mayHold || !this.apart) return;
+    if (!this.apart || !this.whenReady(() => this.further()) || !this.mayHold) return;
     const { handles } = this.hands;
     const group = handles.groups[this.apart.moved];
     this.#moves += 1;
@@ -394,6 +413,11 @@ export class Untangle extends Mode {
   connect() {
     this.controls.connect();
   }
+}
+
+/** Whether a state is what a part of a step works on: x̄ is until the polisher takes it over, x never. */
+function worksOn({ part }, state) {
+  return state === 'trial' || (state === 'primary' && part !== 'polish' && part !== 'outcome');
 }
 
 /** What crosses and what is in contact, in words. */

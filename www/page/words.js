@@ -48,7 +48,8 @@ export function ending(step) {
   switch (step.status) {
     case 'converged': return 'converged';
     case 'max-iterations': return 'iteration limit reached';
-    case 'stalled': return 'stalled: no step lowers the energy';
+    // where nothing but energy is left to lower, and where inverted elements come first
+    case 'stalled': return step.gini ? 'stalled: no better state found' : 'stalled: no step lowers the energy';
     case 'cancelled': return 'stopped';
     default: return '';
   }

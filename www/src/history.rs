@@ -1,7 +1,5 @@
 //! What happened: the iterates of the run on the bench and the curves of the runs before it.
 
-use crate::solid::contact::Contact;
-
 /// What an iteration spent its time on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase {
@@ -65,8 +63,6 @@ pub struct Record {
     pub lim: Option<LimStep>,
     /// Of an untangling: which part of which step this is, and what is wrong then.
     pub moment: Option<Moment>,
-    /// Of an untangling whose boundary must not pass through itself: its contacts then.
-    pub contacts: Vec<Contact>,
     /// The phases of the iteration that led here.
     pub phases: Vec<Phase>,
 }
@@ -106,8 +102,8 @@ pub struct Moment {
     pub solves: u32,
     /// Its constraints, and those that are active.
     pub constraints: [u32; 2],
-    /// Whether the step's result is handed out.
-    pub accepted: bool,
+    /// What becomes of what the step worked on.
+    pub fate: Fate,
     /// The least η of an element, and the one they began with, relative to the measure at rest.
     pub offset: [f64; 2],
     /// Elements whose η was reduced.
@@ -117,6 +113,17 @@ pub struct Moment {
     /// Where the boundary must not pass through itself: pairs of facets that do, of what the step works on, where they
     /// are counted.
     pub meeting: Option<u32>,
+}
+
+/// Where a step of an untangling has what is handed out, x.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fate {
+    /// Where it was.
+    Stays,
+    /// A part of the way to what was polished.
+    Partway,
+    /// At what was polished.
+    Reached,
 }
 
 /// The parts of a step of an untangling, in their order.
@@ -153,7 +160,7 @@ impl Record {
     /// From the page's typed arrays: [`RECORD_WIDTH`] numbers in the order of the fields (−1 for a switch that
     /// has not been), and three (kind, count, milliseconds) for every phase. `None` if the first is too short.
     ///
-    /// Behind them may stand the seven of a [`LimStep`], or the seventeen of a [`Moment`].
+    /// Behind them may stand the seven of a [`LimStep`], or the eighteen of a [`Moment`].
     pub fn from_numbers(numbers: &[f64], phases: &[f64]) -> Option<Self> {
         let (numbers, own) = numbers.split_at_checked(RECORD_WIDTH)?;
         let moment = Moment::from_numbers(own);
@@ -196,7 +203,6 @@ impl Record {
             switched_at: (switched_at >= 0.0).then_some(switched_at as u32),
             lim,
             moment,
-            contacts: Vec::new(),
             phases: phases
                 .as_chunks::<3>()
                 .0
@@ -225,7 +231,7 @@ impl Record {
 impl Moment {
     /// From the numbers of the page: part, iteration, how many the polisher has, three counts of inverted
     /// elements, violated constraints (−1: not counted), zones, iterations of the quadratic problem, its constraints and active ones,
-    /// accepted or not, least and first η, how many are reduced, smallest measure, pairs that meet (−1: not counted).
+    /// whether x moved and whether it got there, least and first η, how many are reduced, smallest measure, pairs that meet (−1: not counted).
     fn from_numbers(numbers: &[f64]) -> Option<Self> {
         let &[
             part,
@@ -239,7 +245,8 @@ impl Moment {
             solves,
             constraints,
             active,
-            accepted,
+            moved,
+            reached,
             least,
             first,
             reduced,
@@ -257,12 +264,49 @@ impl Moment {
             zones: zones as u32,
             solves: solves as u32,
             constraints: [constraints as u32, active as u32],
-            accepted: accepted != 0.0,
+            fate: match (moved != 0.0, reached != 0.0) {
+                (_, true) => Fate::Reached,
+                (true, false) => Fate::Partway,
+                (false, false) => Fate::Stays,
+            },
             offset: [least, first],
             reduced: reduced as u32,
             smallest,
             meeting: (meeting >= 0.0).then_some(meeting as u32),
         })
+    }
+}
+
+/// The states of an untangling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum State {
+    /// What a step works on, x̂ of the paper.
+    #[default]
+    Trial,
+    /// x, which is handed out.
+    Result,
+    /// x̄, the primary solver's.
+    Primary,
+}
+
+impl State {
+    /// From the page's name for it.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "trial" => Some(Self::Trial),
+            "result" => Some(Self::Result),
+            "primary" => Some(Self::Primary),
+            _ => None,
+        }
+    }
+
+    /// What it is called in a heading.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Trial => "Being polished",
+            Self::Result => "Handed out",
+            Self::Primary => "Primary solver",
+        }
     }
 }
 
@@ -277,98 +321,9 @@ pub struct Run {
     pub records: Vec<Record>,
 }
 
-/// The maps of a run, single precision, within a budget of memory. When it is exceeded every second
-/// map is dropped, the first and the newest kept; the numbers of all stay in [`Run::records`].
-#[derive(Debug, Clone)]
-pub struct Frames {
-    kept: Vec<(usize, Vec<f32>)>,
-    stride: usize,
-    budget: usize,
-}
-
-impl Frames {
-    /// An empty history of at most `budget` bytes.
-    pub fn new(budget: usize) -> Self {
-        Self {
-            kept: Vec::new(),
-            stride: 1,
-            budget,
-        }
-    }
-
-    /// Forgets everything.
-    pub fn clear(&mut self) {
-        *self = Self::new(self.budget);
-    }
-
-    /// Adds the map of iterate `index`; indices grow.
-    pub fn push(&mut self, index: usize, map: Vec<f32>) {
-        let bytes = size_of::<f32>() * map.len().max(1);
-        // The newest is always kept; it goes when the next one comes, unless it is on the stride.
-        if self.kept.len() > 1 && self.kept.last().is_some_and(|(i, _)| i % self.stride != 0) {
-            self.kept.pop();
-        }
-        if self.kept.len() > 2 && (self.kept.len() + 1) * bytes > self.budget {
-            self.stride *= 2;
-            let stride = self.stride;
-            self.kept.retain(|(i, _)| i % stride == 0);
-        }
-        self.kept.push((index, map));
-    }
-
-    /// The newest kept map at or before iterate `index`, with its own index.
-    pub fn at(&self, index: usize) -> Option<(usize, &[f32])> {
-        let after = self.kept.partition_point(|(i, _)| *i <= index);
-        self.kept
-            .get(after.saturating_sub(1))
-            .map(|(i, map)| (*i, map.as_slice()))
-    }
-
-    /// How many maps are kept.
-    pub fn len(&self) -> usize {
-        self.kept.len()
-    }
-
-    /// Whether none is.
-    pub fn is_empty(&self) -> bool {
-        self.kept.is_empty()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_frame_is_kept_within_the_budget() {
-        let mut frames = Frames::new(4 * 10 * 100);
-        (0..100).for_each(|i| frames.push(i, vec![i as f32; 10]));
-        assert_eq!(frames.len(), 100);
-        assert!((0..100).all(|i| frames.at(i) == Some((i, &[i as f32; 10][..]))));
-    }
-
-    #[test]
-    fn a_full_history_is_thinned_and_keeps_its_ends() {
-        let mut frames = Frames::new(4 * 10 * 16);
-        for i in 0..1000 {
-            frames.push(i, vec![i as f32; 10]);
-            assert!(frames.len() <= 17);
-            assert_eq!(frames.at(i).map(|(k, _)| k), Some(i), "the newest is there");
-            assert_eq!(frames.at(0).map(|(k, _)| k), Some(0), "the start is there");
-        }
-        assert!(frames.len() >= 8);
-        let (k, map) = frames.at(500).unwrap();
-        assert!(k <= 500 && 500 - k < 128 && map[0] == k as f32);
-    }
-
-    #[test]
-    fn an_empty_history_has_nothing() {
-        let mut frames = Frames::new(0);
-        assert!(frames.is_empty() && frames.at(3).is_none());
-        frames.push(0, vec![1.0]);
-        frames.clear();
-        assert!(frames.is_empty());
-    }
 
     #[test]
     fn records_come_from_numbers() {
@@ -395,10 +350,10 @@ mod tests {
         lim[10..].copy_from_slice(&[1e8, 0.1, 0.5, 0.25, 0.02, 3.0, 4.0]);
         let step = Record::from_numbers(&lim, &[]).and_then(|r| r.lim).unwrap();
         assert_eq!((step.alpha, step.arrived), (1e8, [3, 4]));
-        let mut moment = [0.0; 27];
+        let mut moment = [0.0; 28];
         moment[10..].copy_from_slice(&[
-            3.0, 2.0, 5.0, 7.0, 9.0, 8.0, 20.0, 4.0, 50.0, 30.0, 12.0, 1.0, 0.01, 0.1, 6.0, -0.5,
-            11.0,
+            3.0, 2.0, 5.0, 7.0, 9.0, 8.0, 20.0, 4.0, 50.0, 30.0, 12.0, 1.0, 0.0, 0.01, 0.1, 6.0,
+            -0.5, 11.0,
         ]);
         let record = Record::from_numbers(&moment, &[]).unwrap();
         assert_eq!(record.lim, None);
@@ -408,10 +363,15 @@ mod tests {
             (Part::Polish, [2, 5], [7, 9, 8])
         );
         assert_eq!(
-            (m.constraints, m.offset, m.accepted),
-            ([30, 12], [0.01, 0.1], true)
+            (m.constraints, m.offset, m.fate),
+            ([30, 12], [0.01, 0.1], Fate::Partway)
         );
         assert_eq!((m.violated, m.meeting), (Some(20), Some(11)));
+        for (moved, reached, fate) in [(0.0, 0.0, Fate::Stays), (1.0, 1.0, Fate::Reached)] {
+            [moment[21], moment[22]] = [moved, reached];
+            let record = Record::from_numbers(&moment, &[]).unwrap();
+            assert_eq!(record.moment.map(|m| m.fate), Some(fate));
+        }
         // it is x whose stretch is told, whatever is wrong in what is worked on
         let mut record = record.clone();
         (record.smallest_sigma, record.largest_sigma, record.inverted) = (0.5, 1.5, 7);

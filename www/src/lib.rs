@@ -9,6 +9,7 @@
 pub mod camera;
 pub mod colour;
 pub mod distortion;
+pub mod frames;
 pub mod history;
 pub mod layout;
 pub mod outline;

@@ -1,6 +1,6 @@
 //! What a step did, in the words and symbols of the papers.
 
-use crate::history::{Moment, Part, PhaseKind};
+use crate::history::{Fate, Moment, Part, PhaseKind};
 
 /// One line of the inspector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -376,8 +376,12 @@ pub fn moment_name(moment: &Moment) -> String {
             moment.polish[0], moment.solves
         ),
         Part::Polish => format!("polisher {} of {}", moment.polish[0], moment.polish[1]),
-        Part::Outcome if moment.accepted => "handed out".into(),
-        Part::Outcome => "not handed out".into(),
+        Part::Outcome => match moment.fate {
+            Fate::Reached => "handed out",
+            Fate::Partway => "x went a part of the way",
+            Fate::Stays => "not handed out",
+        }
+        .into(),
     }
 }
 

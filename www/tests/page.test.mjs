@@ -140,6 +140,18 @@ describe('second-order methods', () => {
     assert.equal(await page.inputValue('#start'), 'automatic');
   });
 
+  onPage('GINI on a start that overlaps begins in a circle, and says so', { query: '?triangles=1000' }, async (page) => {
+    assert.equal(await page.inputValue('#start'), 'random');
+    await page.selectOption('#method', 'gini');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem?.settings.method === 'gini');
+    assert.equal(await page.textContent('#notice-title'), 'Another start');
+    assert.match(await page.textContent('#notice-text'), /^The boundary of the start meets itself.*begins in a circle/);
+    assert.ok(await page.isVisible('#notice.plain'));
+    await page.selectOption('#start', 'tutte');
+    await page.waitForFunction(() => globalThis.foldfreePage.session.problem?.settings.start === 'tutte');
+    assert.ok(await page.isHidden('#notice'));
+  });
+
   onPage('a hybrid says when it switched, from an address', { query: '?triangles=1000&method=wrapd+cm' }, async (page) => {
     assert.equal(await page.inputValue('#method'), 'wrapd+cm');
     assert.equal(await page.inputValue('#start'), 'random');

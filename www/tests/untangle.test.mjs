@@ -101,7 +101,7 @@ describe('the session', () => {
       assert.deepEqual(record.counts, [part.trial, part.result, part.primary].map((p) => invertedOf(body, p)), `${record.iteration} ${record.part} ${record.k}`);
       if (record.part === 'outcome') {
         assert.equal(record.gini.polish.length, record.of);
-        if (record.gini.accepted) assert.deepEqual(part.result, part.trial);
+        if (record.gini.reached) assert.deepEqual(part.result, part.trial);
       } else {
         assert.equal(part.result, before.result, 'until the outcome what is handed out stays');
       }

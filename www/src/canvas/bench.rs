@@ -9,7 +9,8 @@ use super::solid::Body;
 use crate::camera::{Orbit, Pan};
 use crate::colour::{DARK, LIGHT, Theme};
 use crate::distortion::RestShapes;
-use crate::history::{Frames, Moment, Record, Run};
+use crate::frames::Frames;
+use crate::history::{Moment, Part, Record, Run, State};
 use crate::layout::View;
 use crate::outline;
 use crate::solid::contact::Contact;
@@ -52,39 +53,6 @@ impl PlotHeight {
         match self {
             Self::Values => Self::Gap,
             Self::Gap => Self::Values,
-        }
-    }
-}
-
-/// The states of an untangling.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum State {
-    /// What a step works on, x̂ of the paper.
-    #[default]
-    Trial,
-    /// x, which is handed out.
-    Result,
-    /// x̄, the primary solver's.
-    Primary,
-}
-
-impl State {
-    /// From the page's name for it.
-    pub fn from_name(name: &str) -> Option<Self> {
-        match name {
-            "trial" => Some(Self::Trial),
-            "result" => Some(Self::Result),
-            "primary" => Some(Self::Primary),
-            _ => None,
-        }
-    }
-
-    /// What it is called in a heading.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Trial => "Being polished",
-            Self::Result => "Handed out",
-            Self::Primary => "Primary solver",
         }
     }
 }
@@ -296,7 +264,13 @@ impl Bench {
         if !fits {
             return;
         }
-        self.frames.push(self.run.records.len(), map);
+        self.push_with(record, map, Vec::new());
+    }
+
+    /// Adds an iterate that fits.
+    fn push_with(&mut self, record: Record, map: Vec<f32>, contacts: Vec<Contact>) {
+        let index = self.run.records.len();
+        self.frames.push_with(index, map, contacts);
         self.keep(record);
         if self.run.records.len() == 1 {
             self.show(0);
@@ -304,8 +278,14 @@ impl Bench {
     }
 
     /// Adds a moment of an untangling: what its step works on with the zones of its elements, the state that is handed
-    /// out, and the primary solver's.
-    pub fn push_moment(&mut self, record: Record, trial: Vec<f32>, others: [Vec<f32>; 2]) {
+    /// out, and the primary solver's; contacts of the first.
+    pub fn push_moment(
+        &mut self,
+        record: Record,
+        trial: Vec<f32>,
+        others: [Vec<f32>; 2],
+        contacts: Vec<Contact>,
+    ) {
         let Some(body) = &mut self.body else { return };
         if !body.fits(&trial) || !others.iter().all(|other| body.fits(other)) {
             return;
@@ -315,7 +295,7 @@ impl Bench {
         for (frames, other) in self.states.iter_mut().zip(others) {
             frames.push(index, other);
         }
-        self.push(record, trial);
+        self.push_with(record, trial, contacts);
     }
 
     fn clear_frames(&mut self) {
@@ -333,9 +313,21 @@ impl Bench {
         }
     }
 
-    /// The contacts of the moment on show.
-    pub fn contacts(&self) -> &[Contact] {
-        self.record().map_or(&[], |record| &record.contacts)
+    /// The contacts of what the step on show works on, unless its map was dropped.
+    pub fn contacts(&self) -> Option<&[Contact]> {
+        self.frames.contacts(self.shown)
+    }
+
+    /// Whether the state on show is what its step works on: only that crosses, and has contacts. What is handed out never
+    /// does, and the primary solver's state is worked on until the polisher takes it over.
+    pub fn shows_work(&self) -> bool {
+        match self.state {
+            State::Trial => true,
+            State::Result => false,
+            State::Primary => self
+                .moment()
+                .is_some_and(|m| matches!(m.part, Part::Start | Part::Local | Part::Quadratic)),
+        }
     }
 
     /// What is known of the moment on show, of an untangling.
@@ -439,9 +431,11 @@ impl Bench {
         self.run.method.starts_with("lim")
     }
 
-    /// Whether what is on show is an untangling.
+    /// Whether what is on show is an untangling, also while a view has taken its body to draw it. Maps of surfaces have the
+    /// same method, but neither.
     pub fn is_untangling(&self) -> bool {
-        self.run.method == "gini" && self.body.is_some()
+        let parts = || self.record().is_some_and(|r| r.moment.is_some());
+        self.run.method == "gini" && (self.body.is_some() || parts())
     }
 
     /// What things are called on this bench.

@@ -7,11 +7,11 @@ use eframe::egui;
 use glam::Vec3;
 use wasm_bindgen::prelude::*;
 
-use super::bench::{Bench, State};
+use super::bench::Bench;
 use super::race::Race;
 use super::solid::{Body, Cut};
 use super::stage::{Mode, Stage};
-use crate::history::Record;
+use crate::history::{Record, State};
 use crate::solid::contact::Contact;
 use crate::solid::field::Field;
 
@@ -175,7 +175,7 @@ impl BenchHandle {
         }
     }
 
-    /// Adds a moment of an untangling: numbers as for `pushFrame`, with the seventeen of a moment behind the first ten; what
+    /// Adds a moment of an untangling: numbers as for `pushFrame`, with the eighteen of a moment behind the first ten; what
     /// the step works on (n×3) and the zone of every element (m, or nothing); the state that is handed out and the
     /// primary solver's (n×3 each); its contacts, seven numbers each: vertices, two edges or not,
     /// active or not, zone.
@@ -190,10 +190,10 @@ impl BenchHandle {
         primary: Vec<f32>,
         contacts: &[u32],
     ) {
-        if let Some(mut record) = Record::from_numbers(numbers, phases) {
-            record.contacts = Contact::from_numbers(contacts, primary.len() / 3);
+        if let Some(record) = Record::from_numbers(numbers, phases) {
+            let contacts = Contact::from_numbers(contacts, primary.len() / 3);
             let trial = [trial, zones].concat();
-            self.change(|bench| bench.push_moment(record, trial, [result, primary]));
+            self.change(|bench| bench.push_moment(record, trial, [result, primary], contacts));
         }
     }
 
@@ -264,10 +264,11 @@ impl BenchHandle {
     /// Whether what is held of a body that is untangled may be dragged elsewhere.
     #[wasm_bindgen(js_name = setMovable)]
     pub fn set_movable(&self, on: bool) {
-        self.body(|body| body.movable = on);
+        self.body(|body| (body.movable, body.grabbed) = (on, false));
     }
 
-    /// Contacts of the moment on show as drawn in the view of the skin: those of vertices and facets, and of edges.
+    /// Contacts of the moment on show in the view of the skin: those of vertices and facets that there are, and of edges;
+    /// and their glyphs, where many nearly in one place have one.
     #[wasm_bindgen(getter, js_name = drawnContacts)]
     pub fn drawn_contacts(&self) -> Vec<usize> {
         self.body(|body| body.drawn_contacts.to_vec())
@@ -348,6 +349,12 @@ impl BenchHandle {
     #[wasm_bindgen(js_name = setTinted)]
     pub fn set_tinted(&self, on: bool) {
         self.change(|bench| bench.tinted = on);
+    }
+
+    /// Whether it does.
+    #[wasm_bindgen(getter)]
+    pub fn tinted(&self) -> bool {
+        self.change(|bench| bench.tinted)
     }
 
     /// Tetrahedra the plane of the cut meets, as drawn last.

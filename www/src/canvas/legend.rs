@@ -25,8 +25,8 @@ pub struct Legend {
     pub clamped_below: bool,
 }
 
-/// The ramp with its ticks and the mark of clamped values, at the lower left of a view.
-pub fn ramp(painter: &egui::Painter, rect: Rect, bench: &Bench, legend: &Legend) {
+/// The ramp with its ticks and the mark of clamped values, at the lower left of a view; returns what it covers.
+pub fn ramp(painter: &egui::Painter, rect: Rect, bench: &Bench, legend: &Legend) -> Rect {
     let (theme, text) = (bench.theme, bench.text);
     let small = || style::regular(style::SMALL * text);
     let quiet = style::colour(theme.quiet);
@@ -84,6 +84,7 @@ pub fn ramp(painter: &egui::Painter, rect: Rect, bench: &Bench, legend: &Legend)
         let at = pos2(x, bar.bottom() + 4.0);
         painter.text(at, Align2::CENTER_TOP, name, small(), quiet);
     }
+    ground
 }
 
 /// A swatch with the dots that mark values beyond the ramp.

@@ -4,7 +4,7 @@ use eframe::egui::{Align2, Rect, Sense, Stroke, pos2};
 
 use super::Column;
 use crate::canvas::style;
-use crate::history::{Moment, Part, PhaseKind, Record};
+use crate::history::{Fate, Moment, Part, PhaseKind, Record};
 use crate::scale::{number, whole};
 use crate::solid::contact::Contact;
 use crate::words::{citation, explain, method_name};
@@ -65,12 +65,16 @@ impl Column<'_> {
                 ahead: order(moment.part) < order(part),
             });
         }
-        let (symbol, sentence) = match moment.accepted {
-            true => (
+        let (symbol, sentence) = match moment.fate {
+            Fate::Reached => (
                 "x moves there",
                 "What was polished is handed out, since no element that is still inverted is worse than before.",
             ),
-            false => (
+            Fate::Partway => (
+                "x goes a part of the way",
+                "Polishing ended with something wrong. What still collides, or would get worse, goes less far, everything else the whole way: of what is handed out still nothing crosses.",
+            ),
+            Fate::Stays => (
                 "x stays",
                 "Some element that is still inverted would be worse than before: what is handed out stays, and the constraints that were found stay for the next step.",
             ),
@@ -220,8 +224,27 @@ impl Column<'_> {
             &whole(meeting as usize),
             "Facets of the boundary that meet where they should not, in what this step works on; exactly. In what is handed out none ever do.",
         );
+        let Some(contacts) = self.bench.contacts() else {
+            self.pair(
+                "contacts",
+                "no longer kept",
+                "The history has grown too long to keep every state.",
+            );
+            return;
+        };
         let (edges, corners): (Vec<&Contact>, Vec<&Contact>) =
-            self.bench.contacts().iter().partition(|c| c.edges);
+            contacts.iter().partition(|c| c.edges);
+        // the last state of the quadratic problem is the first of the polisher
+        let [at, _] = moment.polish;
+        let meaning = match moment.part {
+            Part::Start | Part::Local => "",
+            Part::Quadratic if at < moment.solves => {
+                "Active ones push: their multipliers are above 0."
+            }
+            _ => {
+                "Active ones still collide on the way from x to here, which is what is still wrong; the others did collide before, and stay constraints."
+            }
+        };
         for (name, list, hint) in [
             (
                 "contacts ◆, active",
@@ -236,7 +259,7 @@ impl Column<'_> {
         ] {
             let active = list.iter().filter(|c| c.active).count();
             let words = format!("{}, {}", whole(list.len()), whole(active));
-            self.pair(name, &words, &format!("{hint} Active ones hold the two apart now; the others did before, and stay ready."));
+            self.pair(name, &words, format!("{hint} {meaning}").trim_end());
         }
     }
 }

@@ -12,7 +12,8 @@ use super::painting::{Painted, Painting};
 use super::{gpu, style};
 use crate::camera::Pan;
 use crate::colour::curve_style;
-use crate::history::{Frames, Record, Run};
+use crate::frames::Frames;
+use crate::history::{Record, Run};
 
 /// Solvers that are compared at most.
 pub const MOST_LANES: usize = 4;

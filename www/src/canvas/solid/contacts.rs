@@ -20,8 +20,8 @@ const SIDE: f32 = 5.0;
 const SMALL: f32 = 3.2;
 const MANY: usize = 120;
 
-/// Draws the contacts of the moment on show that are `here`, where many are nearly in one place one of them; returns how
-/// many there are of vertices and facets, and of edges.
+/// Draws the contacts of the state on show that are `here`, where many are nearly in one place one of them; returns how
+/// many there are of vertices and facets, and of edges, and how many of each were drawn.
 pub fn draw(
     painter: &Painter,
     rect: Rect,
@@ -29,10 +29,14 @@ pub fn draw(
     bench: &Bench,
     (positions, zoned): (&[f32], bool),
     here: impl Fn(Vec3) -> bool,
-) -> [usize; 2] {
-    let contacts = bench.contacts();
+) -> [usize; 4] {
+    // those of a state that was dropped would be drawn on another
+    let there = bench.shows_work() && bench.shown_map == bench.shown;
+    let Some(contacts) = bench.contacts().filter(|_| there) else {
+        return [0; 4];
+    };
     let side = if contacts.len() > MANY { SMALL } else { SIDE };
-    let mut there = [0; 2];
+    let mut count = [0; 4];
     let mut taken: BTreeSet<(bool, i32, i32)> = BTreeSet::new();
     // active ones come first to their places
     let mut drawn = Vec::new();
@@ -42,10 +46,11 @@ pub fn draw(
             if !p.is_finite() || !here(p) {
                 continue;
             }
-            there[usize::from(contact.edges)] += 1;
+            count[usize::from(contact.edges)] += 1;
             let (at, _) = lens.project(p);
             let [x, y] = [at.x, at.y].map(|x| (x / (1.5 * side)).floor() as i32);
             if taken.insert((contact.edges, x, y)) {
+                count[2 + usize::from(contact.edges)] += 1;
                 drawn.push((rect.min + vec2(at.x, at.y), contact));
             }
         }
@@ -61,7 +66,7 @@ pub fn draw(
             glyph(painter, *at, contact, side, bench, style::colour(own));
         }
     }
-    there
+    count
 }
 
 fn glyph(painter: &Painter, at: Pos2, contact: &Contact, side: f32, bench: &Bench, own: Color32) {
@@ -97,10 +102,11 @@ fn glyph(painter: &Painter, at: Pos2, contact: &Contact, side: f32, bench: &Benc
 
 /// What is in contact, in words with their glyphs, under the count of what is inverted.
 pub fn key(painter: &Painter, rect: Rect, bench: &Bench) {
-    let Some(meeting) = bench.moment().and_then(|moment| moment.meeting) else {
+    let moment = bench.moment().filter(|_| bench.shows_work());
+    let Some(meeting) = moment.and_then(|moment| moment.meeting) else {
         return;
     };
-    let contacts = bench.contacts();
+    let contacts = bench.contacts().unwrap_or_default();
     let (theme, text) = (bench.theme, bench.text);
     let active = contacts.iter().filter(|c| c.active).count();
     let crossing = match meeting {

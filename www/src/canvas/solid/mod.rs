@@ -74,8 +74,10 @@ pub struct Body {
     pub zones: bool,
     /// Whether what is held may be dragged while it is untangled.
     pub movable: bool,
-    /// Contacts drawn last: of vertices and facets, of edges.
-    pub drawn_contacts: [usize; 2],
+    /// Whether a handle was ever grabbed since then.
+    pub grabbed: bool,
+    /// Contacts there were to draw last, of vertices and facets and of edges; and the glyphs that they got.
+    pub drawn_contacts: [usize; 4],
     /// The drag under way.
     pub grab: Option<Grab>,
     /// Vertex under the pointer.

@@ -58,11 +58,14 @@ pub fn show(ui: &mut egui::Ui, rect: Rect, bench: &mut Bench) {
     }
     contacts::key(ui.painter(), rect, bench);
     handles::rubber(ui.painter(), ui, bench, &body);
-    if bench.tinted || planar {
-        legend::ramp(ui.painter(), rect, bench, &body.legend());
-    } else {
+    let mut at = pos2(rect.left() + 14.0, rect.bottom() - 12.0);
+    let legend = bench.tinted || planar;
+    if legend {
+        at.y = legend::ramp(ui.painter(), rect, bench, &body.legend()).top() - 6.0;
+    }
+    // beside a legend there is room for what cannot be guessed
+    if !legend || bench.is_untangling() && body.movable && !body.grabbed {
         let hint = hint(bench, &body);
-        let at = pos2(rect.left() + 14.0, rect.bottom() - 12.0);
         style::label(ui.painter(), bench, at, Align2::LEFT_BOTTOM, hint, true);
     }
     let title = match (bench.is_untangling(), planar) {
@@ -82,7 +85,10 @@ fn hint(bench: &Bench, body: &Body) -> &'static str {
     if handles::all_is_held(bench, body) {
         "all of the outside is held; drag to turn"
     } else if bench.is_untangling() && body.movable {
-        "drag a square to move what it holds; drag beside it to turn"
+        match body.solid.planar {
+            true => "drag a square to move what it holds",
+            false => "drag a square to move what it holds; drag beside it to turn",
+        }
     } else if bench.is_untangling() {
         "drag to turn"
     } else if body.handles.is_empty() {
@@ -138,6 +144,7 @@ fn answer(ui: &egui::Ui, rect: Rect, response: &Response, lens: &Lens, bench: &m
         body.grab = Some(begin(bench, &body, lens, by_main, shift, origin, local));
         // Only a handle can be turned; the skin is pulled, whatever key is held.
         let handle = matches!(bench.events.last(), Some(Event::GrabHandle(_)));
+        body.grabbed |= handle;
         if let (Some(Grab::Vertices(_, from)), true) = (body.grab, turning && handle) {
             body.grab = Some(Grab::Turn(from));
         }
