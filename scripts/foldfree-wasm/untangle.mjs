@@ -68,6 +68,7 @@ export function run(_operand, values) {
   if (init === undefined) throw new Failure('--init is needed');
   needTargets(values);
   if (values.flow && !values.overlap) throw new Failure('--flow needs --overlap');
+  if (values.tolerance !== undefined && !values.minimize) throw new Failure('--tolerance needs --minimize');
   const settings = settingsOf(values);
   const kind = isSolid(rest) ? SOLIDS : TRIANGLES;
   if (out !== undefined) kind.check(out);
