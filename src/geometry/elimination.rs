@@ -57,7 +57,8 @@ impl Elimination {
         }
     }
 
-    /// The contributions (row, column, element, A g_a·g_b) of (5a) between free vertices, by slot.
+    /// The contributions (row, column, element, A g_a·g_b) of (5a) of free vertices, to each other and to pinned ones, by
+    /// slot.
     pub fn laplacian(&self, rest: &RestShape) -> Vec<(u32, u32, u32, f64)> {
         match rest.stretches {
             2 => self.laplacian_of::<3>(rest),
@@ -78,7 +79,7 @@ impl Elimination {
             let gradients: [_; CORNERS] = from_fn(|a| rest.hat_gradient(e as usize, a));
             for a in 0..CORNERS {
                 for b in 0..=a {
-                    if is_free(slots[a]) && is_free(slots[b]) {
+                    if is_free(slots[a]) || is_free(slots[b]) {
                         let [g, h] = [gradients[a], gradients[b]];
                         let product = g[0] * h[0] + g[1] * h[1] + g[2] * h[2];
                         list.push((slots[a], slots[b], e, measure * product));
