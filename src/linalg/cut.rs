@@ -168,3 +168,53 @@ impl Cut {
         false
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn covers_are_the_smallest() {
+        let mut state = 9u64;
+        let mut random = |below: u64| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) % below
+        };
+        let n = 12;
+        let mut cut = Cut::new(n);
+        for round in 0..300 {
+            // some edges inside of either side, too
+            let count = 2 + round % 24;
+            let edges: Vec<(u32, u32)> = (0..count)
+                .map(|_| (random(n as u64) as u32, random(n as u64) as u32))
+                .collect();
+            let graph = Graph::new(n, edges.iter().copied());
+            let is_left = |v: u32| v % 2 == 0;
+            let crossing = || edges.iter().filter(|e| is_left(e.0) != is_left(e.1));
+            let is_cover = |set: u32| crossing().all(|&(a, b)| (set >> a | set >> b) & 1 == 1);
+            let sets = (0..1u32 << n).filter(|&set| is_cover(set));
+            let least = sets.map(u32::count_ones).min().expect("all vertices") as usize;
+            let has_edge = |v: &u32| graph.of(*v).iter().any(|&w| !is_left(w));
+            let left: Vec<u32> = (0..n as u32)
+                .filter(|&v| is_left(v))
+                .filter(has_edge)
+                .collect();
+            let cover = cut
+                .cover(&graph, &left, is_left, |_| true)
+                .expect("any size");
+            assert_eq!(cover.len(), least, "{edges:?}");
+            assert!(cover.is_sorted() && is_cover(cover.iter().fold(0, |set, v| set | 1 << v)));
+            // one of that size only where that is good enough
+            assert!(
+                cut.cover(&graph, &left, is_left, |size| size < least)
+                    .is_none()
+            );
+            assert_eq!(
+                cut.cover(&graph, &left, is_left, |size| size <= least),
+                Some(cover)
+            );
+        }
+    }
+}
