@@ -386,3 +386,40 @@ fn a_body_inside_another_is_not_apart() {
         assert_ne!(u.solver().status(), INJECTIVE);
     }
 }
+
+#[test]
+fn neither_units_nor_threads_change_the_way() {
+    let problem = interlocked_arms_in_the_plane(2);
+    let states = |unit: f64, threads: usize| {
+        let scaled = |points: &[DVec3]| points.iter().map(|p| unit * *p).collect::<Vec<_>>();
+        let mut rest = problem.rest.clone();
+        rest.positions = scaled(&rest.positions);
+        let start = scaled(&problem.start);
+        let go = || {
+            let pins = &problem.pins;
+            let made = Untangling::of_plane(&rest, &start, pins, &[], Material::Arap, &options());
+            let mut u = made.expect("apart");
+            let mut states = Vec::new();
+            for pins in &problem.moves {
+                let pins: Vec<(u32, DVec3)> = pins.iter().map(|&(v, p)| (v, unit * p)).collect();
+                u.move_pins(&pins).expect("pins");
+                while u.solver().status() == Status::Running {
+                    u.step().expect("a step");
+                    states.push(scaled(&u.positions()));
+                }
+            }
+            states
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.expect("threads").install(go)
+    };
+    let one = states(1.0, 1);
+    assert!(one.len() > 1);
+    assert_eq!(one, states(1.0, 3));
+    // powers of two leave nothing to rounding; states have been scaled once more
+    let far = states(1024.0, 2);
+    assert_eq!(one.len(), far.len());
+    for (a, b) in one.iter().flatten().zip(far.iter().flatten()) {
+        assert!(a.distance(*b / (1024.0 * 1024.0)) < 1e-9, "{a} and {b}");
+    }
+}
