@@ -124,36 +124,51 @@ impl GiniProblem<'_> {
     }
 }
 
-/// The signed measure of the image, if pins determine it: all vertices of the boundary are held. It is the sum over
-/// the elements (D + 1 `corners` each), whatever the inside is like. With it the largest rounding error it may have.
-pub(super) fn held_measure<const D: usize>(
-    corners: &[u32],
-    is_held: &[bool],
-    points: &[[f64; D]],
-) -> Option<(f64, f64)> {
-    let held = is_held.iter().filter(|&&held| held).count();
-    if held <= D {
-        return None;
+/// Are all vertices of the boundary of these elements (D + 1 `corners` each) held, so that pins determine the signed measure
+/// of the image?
+pub(super) fn is_enclosed<const D: usize>(corners: &[u32], is_held: &[bool]) -> bool {
+    if is_held.iter().filter(|&&held| held).count() <= D {
+        return false;
     }
-    // facets with a vertex that moves, as sorted vertices: all of them must have two elements
-    let mut facets: Vec<[u32; 3]> = Vec::new();
-    for simplex in corners.chunks_exact(D + 1) {
-        for opposite in 0..=D {
-            let mut facet = [u32::MAX; 3];
-            let others = (0..=D).filter(|&v| v != opposite);
-            for (place, v) in facet.iter_mut().zip(others) {
-                *place = simplex[v];
-            }
-            if facet[..D].iter().any(|&v| !is_held[v as usize]) {
-                facet.sort_unstable();
-                facets.push(facet);
-            }
-        }
+    // facets with a vertex that moves, as sorted vertices, under their lowest: all of them must have two elements
+    let facets = || {
+        corners.chunks_exact(D + 1).flat_map(|simplex| {
+            (0..=D).filter_map(|opposite| {
+                let mut facet = [u32::MAX; 3];
+                let others = (0..=D).filter(|&v| v != opposite);
+                for (place, v) in facet.iter_mut().zip(others) {
+                    *place = simplex[v];
+                }
+                facet[..D].sort_unstable();
+                let moves = facet[..D].iter().any(|&v| !is_held[v as usize]);
+                moves.then_some(facet)
+            })
+        })
+    };
+    let mut end = vec![0usize; is_held.len() + 1];
+    facets().for_each(|f| end[f[0] as usize + 1] += 1);
+    for v in 0..is_held.len() {
+        end[v + 1] += end[v];
     }
-    facets.sort_unstable();
-    if facets.chunk_by(|a, b| a == b).any(|same| same.len() != 2) {
-        return None;
+    let begin = end.clone();
+    let mut by_lowest = vec![[u32::MAX; 2]; end[is_held.len()]];
+    for [lowest, a, b] in facets() {
+        let place = &mut end[lowest as usize];
+        by_lowest[*place] = [a, b];
+        *place += 1;
     }
+    begin.windows(2).all(|range| {
+        let of_vertex = &mut by_lowest[range[0]..range[1]];
+        of_vertex.sort_unstable();
+        of_vertex
+            .chunk_by(|a, b| a == b)
+            .all(|same| same.len() == 2)
+    })
+}
+
+/// The signed measure of the image of these elements: where the boundary is held, whatever the inside is like. With it the
+/// largest rounding error it may have.
+pub(super) fn image_measure<const D: usize>(corners: &[u32], points: &[[f64; D]]) -> (f64, f64) {
     let (mut sum, mut size) = (0.0, 0.0);
     for simplex in corners.chunks_exact(D + 1) {
         let at = |i: usize| points[simplex[i.min(D)] as usize];
@@ -161,7 +176,7 @@ pub(super) fn held_measure<const D: usize>(
         sum += measure;
         size += measure.abs();
     }
-    Some((sum, 1e-12 * size))
+    (sum, 1e-12 * size)
 }
 
 /// The elements that are not strictly positive, in ascending order: exact, whatever the solver thinks of its

@@ -77,6 +77,8 @@ pub struct Gini<const D: usize> {
     positions: Vec<f64>,
     pub(super) hopeless: Vec<u32>,
     pub(super) hopeless_measure: Option<f64>,
+    /// Do pins hold all of the boundary?
+    is_enclosed: bool,
     /// η relative to the rest measure, where it has not been reduced.
     first_offset: f64,
     /// Are Z and U to be set from x̄?

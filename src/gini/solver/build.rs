@@ -9,7 +9,7 @@ use crate::gini::admm::{Admm, Body};
 use crate::gini::contacts::Contacts;
 use crate::gini::elements::Elements;
 use crate::gini::outcome::MOST_PAIRS;
-use crate::gini::problem::{held_measure, not_positive};
+use crate::gini::problem::{image_measure, is_enclosed, not_positive};
 use crate::gini::set::ConstraintSet;
 use crate::gini::zones::Zones;
 use crate::gini::{GiniOptions, GiniProblem};
@@ -95,14 +95,15 @@ impl<const D: usize> Gini<D> {
             }
         }
         let held: Vec<bool> = movable.iter().map(|m| !m).collect();
-        let image = held_measure(
-            &problem.rest.vertices,
-            &is_held,
-            problem.start.as_chunks::<D>().0,
-        );
         let at_rest: f64 = rest.measure.iter().sum();
         // where pins leave less room than there is at rest, every η is less from the beginning
-        let room = image.map_or(1.0, |(image, _)| (image / at_rest).clamp(1e-6, 1.0));
+        let corners = &problem.rest.vertices;
+        let is_enclosed = is_enclosed::<D>(corners, &is_held);
+        let room = match is_enclosed {
+            true => image_measure(corners, problem.start.as_chunks::<D>().0).0 / at_rest,
+            false => 1.0,
+        }
+        .clamp(1e-6, 1.0);
         let first_offset = room * options.offset;
         let elements = Elements::new(&rest, &slot, &held, first_offset);
         let admm = Admm::new(
@@ -158,6 +159,7 @@ impl<const D: usize> Gini<D> {
             positions: problem.start.to_vec(),
             hopeless: Vec::new(),
             hopeless_measure: None,
+            is_enclosed,
             first_offset,
             begins_anew: true,
             idle: 0,
@@ -204,8 +206,11 @@ impl<const D: usize> Gini<D> {
         let (corners, elements): (Vec<&[u32]>, Vec<u32>) = held.unzip();
         let inverted = not_positive(D, &corners.concat(), points.as_flattened());
         self.hopeless = inverted.iter().map(|&k| elements[k as usize]).collect();
-        let image = held_measure(&self.corners, &is_held, &points);
-        self.hopeless_measure = image.filter(|(image, error)| image <= error).map(|i| i.0);
+        self.hopeless_measure = None;
+        if self.is_enclosed {
+            let (image, error) = image_measure(&self.corners, &points);
+            self.hopeless_measure = (image <= error).then_some(image);
+        }
     }
 }
 
