@@ -30,6 +30,7 @@ pub mod parameterization;
 pub mod quasi_newton;
 pub mod slim;
 pub mod space;
+mod total_order;
 #[cfg(target_arch = "wasm32")]
 pub mod wasm;
 pub mod wrapd;

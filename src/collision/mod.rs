@@ -21,7 +21,9 @@ mod tree;
 pub(crate) mod vector;
 
 pub use boundary::{Boundary, BoundaryError};
+pub(crate) use boxes::Bounds;
 pub use broad::{BroadPhase, Candidate};
 pub use ccd::{Impact, Pair, impact, time_of_impact};
 pub use intersection::intersections;
 pub use overlap::overlaps;
+pub(crate) use tree::Tree;

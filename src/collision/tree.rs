@@ -1,6 +1,7 @@
 //! A binary tree of boxes: built once by halving, refitted as the boxes move.
 
 use super::boxes::Bounds;
+use crate::total_order::ranked;
 use std::ops::ControlFlow;
 
 /// Items in a leaf.
@@ -20,12 +21,13 @@ impl<const D: usize> Tree<D> {
     /// Of these boxes.
     pub fn new(boxes: &[Bounds<D>]) -> Self {
         let leaves = boxes.len().div_ceil(LEAF).next_power_of_two();
-        let mut this = Self {
-            order: (0..boxes.len() as u32).collect(),
-            nodes: vec![Bounds::EMPTY; 2 * leaves],
-        };
-        build(&mut this.nodes, &mut this.order, boxes, 1);
-        this
+        let mut nodes = vec![Bounds::EMPTY; 2 * leaves];
+        let mut order: Vec<(i64, u32)> = (0..boxes.len() as u32).map(|item| (0, item)).collect();
+        build(&mut nodes, &mut order, boxes, 1);
+        Self {
+            order: order.iter().map(|&(_, item)| item).collect(),
+            nodes,
+        }
     }
 
     /// The same tree of other boxes.
@@ -134,15 +136,16 @@ fn halves((node, start, end): Node) -> [Node; 2] {
     [(2 * node, start, middle), (2 * node + 1, middle, end)]
 }
 
+/// The items of `order` into the tree under this node, halved where their centres have their median.
 fn build<const D: usize>(
     nodes: &mut [Bounds<D>],
-    order: &mut [u32],
+    order: &mut [(i64, u32)],
     boxes: &[Bounds<D>],
     node: usize,
 ) {
     let around = order
         .iter()
-        .fold(Bounds::EMPTY, |b, &i| b.union(boxes[i as usize]));
+        .fold(Bounds::EMPTY, |b, &(_, i)| b.union(boxes[i as usize]));
     nodes[node] = around;
     if 2 * node >= nodes.len() {
         return;
@@ -154,13 +157,11 @@ fn build<const D: usize>(
     });
     let middle = order.len() / 2;
     if !order.is_empty() {
-        let centre = |i: u32| {
-            let b = &boxes[i as usize];
-            b.low[axis] * 0.5 + b.high[axis] * 0.5
-        };
-        order.select_nth_unstable_by(middle, |&i, &j| {
-            centre(i).total_cmp(&centre(j)).then(i.cmp(&j))
-        });
+        for (centre, item) in order.iter_mut() {
+            let b = &boxes[*item as usize];
+            *centre = ranked(b.low[axis] * 0.5 + b.high[axis] * 0.5);
+        }
+        order.select_nth_unstable(middle);
     }
     let (lower, upper) = order.split_at_mut(middle);
     build(nodes, lower, boxes, 2 * node);

@@ -8,6 +8,7 @@
 
 use super::Graph;
 use super::cut::Cut;
+use crate::total_order::ranked;
 
 /// The two sides and what separates them.
 #[derive(Debug, Clone, Default)]
@@ -183,12 +184,7 @@ fn walks(graph: &Graph, mut one: u32) -> Vec<[f64; WALKS]> {
 /// How many of these ends (ascending) a vertex is behind, were the vertices sorted by value, then by number:
 /// those before end k are in zones up to k.
 fn zones(values: impl Iterator<Item = f64>, ends: &[usize; PLACES.len()]) -> Vec<u8> {
-    // integers in the order of `f64::total_cmp`
-    let key = |value: f64| {
-        let bits = value.to_bits() as i64;
-        bits ^ (((bits >> 63) as u64) >> 1) as i64
-    };
-    let mut order: Vec<(i64, u32)> = values.map(key).zip(0..).collect();
+    let mut order: Vec<(i64, u32)> = values.map(ranked).zip(0..).collect();
     // the middle first, outwards from there
     let [a, b, c, d, e] = *ends;
     for (first, end, limit) in [
