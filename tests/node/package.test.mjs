@@ -27,11 +27,11 @@ describe('the packed package', () => {
   // problems 133 KB (58 KB): elimination, three engines, lattice reduction and enumeration; untangling 134 KB (52 KB),
   // with the element loops of five energies, and what keeps boundaries from meeting, in two dimensions each, 115 KB
   // (43 KB). What shows the inside of a step, parts boundaries by a flow, and has Newton's method go on after GINI is
-  // another 114 KB (47 KB).
+  // another 124 KB (50 KB). That the compiler unrolls and interleaves no loops is 73 KB (25 KB) less of all, and costs no time.
   it('has a small single-thread wasm', () => {
     const wasm = readFileSync(join(home, 'pkg/single/foldfree_bg.wasm'));
-    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_715_000, `${wasm.length} bytes`);
-    assert.ok(gzipSync(wasm, { level: 9 }).length <= 675_000);
+    assert.ok(statSync(join(home, 'pkg/single/foldfree_bg.wasm')).size <= 1_680_000, `${wasm.length} bytes`);
+    assert.ok(gzipSync(wasm, { level: 9 }).length <= 665_000);
   });
 
   it('pleases publint', async () => {
