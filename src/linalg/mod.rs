@@ -2,6 +2,7 @@
 
 mod assembly;
 mod blocks;
+mod chains;
 mod cholesky;
 mod cut;
 mod dissection;

@@ -1,5 +1,6 @@
 //! Triangular solves with a factor in panels, part by part.
 
+use super::chains::{Chains, Gathered};
 use super::panels::{Panel, Panels, Part, ROWS, WIDEST};
 use crate::parallel;
 use core::ops::Range;
@@ -186,22 +187,18 @@ fn add_products<const C: usize, const D: usize>(
     values: &[[f64; ROWS]],
     width: usize,
     column: usize,
-    gathered: &[[[f64; D]; ROWS]],
+    gathered: &[Gathered<D>],
 ) {
-    let mut chains = [[[0.0; D]; 2]; C];
+    let mut chains = [Chains::<D>::ZERO; C];
     for (l, x) in values.chunks_exact(width).zip(gathered).rev() {
-        let l = &l[column..column + C];
-        for c in 0..C {
-            for k in 0..ROWS {
-                for d in 0..D {
-                    chains[c][k % 2][d] += l[c][k] * x[k][d];
-                }
-            }
+        for (chains, l) in chains.iter_mut().zip(&l[column..column + C]) {
+            chains.add_products(l, x);
         }
     }
-    for c in 0..C {
+    for (sums, chains) in sums.iter_mut().zip(chains) {
+        let chains = chains.sums();
         for d in 0..D {
-            sums[c][d] += chains[c][0][d] + chains[c][1][d];
+            sums[d] += chains[d];
         }
     }
 }
@@ -227,7 +224,7 @@ impl<const D: usize> Backward<'_, D> {
             end,
             later,
         } = self;
-        let mut gathered = [[[0.0; D]; ROWS]; GATHERED];
+        let mut gathered = [Chains::<D>::NOTHING; GATHERED];
         for panel in factor.panels.panels[panels].iter().rev() {
             let (start, width) = (panel.first as usize, panel.width as usize);
             let x = start - first;
@@ -244,10 +241,10 @@ impl<const D: usize> Backward<'_, D> {
                 let gathered = &mut gathered[..rows.len()];
                 let own_rows = inner.saturating_sub(begin).min(rows.len());
                 for (x, rows) in gathered.iter_mut().zip(&rows[..own_rows]) {
-                    *x = rows.map(|row| own[row as usize - first]);
+                    *x = Chains::gather(rows.map(|row| own[row as usize - first]));
                 }
                 for (x, rows) in gathered[own_rows..].iter_mut().zip(&rows[own_rows..]) {
-                    *x = rows.map(|row| later[row as usize - end]);
+                    *x = Chains::gather(rows.map(|row| later[row as usize - end]));
                 }
                 let values = &values[begin * width..(begin + rows.len()) * width];
                 let mut column = 0;
