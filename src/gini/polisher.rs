@@ -109,8 +109,7 @@ fn step<const D: usize>(
             });
         }
     }
-    let diagonal = |row: &Row<D>| row.gradient.iter().flatten().map(|g| g * g).sum::<f64>();
-    let most = rows.iter().map(diagonal).fold(0.0, f64::max);
+    let most = rows.iter().map(Row::square).fold(0.0, f64::max);
     let shift = gamma * most;
     let direction = match shift > 0.0 {
         true => normal::direction(&rows, shift, vertices.len()),

@@ -50,7 +50,7 @@ pub fn dots<'a>(
                 *t += s;
             }
         };
-        if parallel::threads() > 1 {
+        if parallel::threads() > 1 && chunks > 3 {
             let mut partial = vec![[0.0; ROUND]; chunks];
             parallel::for_each_chunk(&mut partial, 1, |chunk, sums| {
                 one_chunk(chunk, &mut sums[0]);

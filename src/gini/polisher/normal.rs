@@ -6,12 +6,18 @@ use crate::parallel;
 /// Up to so many violated constraints JJᵀ + U is factored, beyond conjugate gradients are used.
 const DENSE: usize = 40;
 
-/// Most iterations of conjugate gradients, and when they end: the residual relative to the right-hand side.
+/// Most iterations of conjugate gradients, and when they end: the residual relative to the right-hand side, in the norm
+/// of the preconditioner.
 const MOST_CG: usize = 60;
 const CG_TOLERANCE: f64 = 1e-2;
 
 /// Rows, or vertices, that are one piece of work.
 const CHUNK: usize = 512;
+
+/// A thread's share of so many rows or vertices.
+fn share(count: usize) -> usize {
+    count.div_ceil(parallel::threads()).max(CHUNK)
+}
 
 /// A violated constraint of a zone: e < 0 and its gradient on the zone's vertices.
 pub(super) struct Row<const D: usize> {
@@ -19,6 +25,13 @@ pub(super) struct Row<const D: usize> {
     pub vertices: [u32; 4],
     pub gradient: [[f64; D]; 4],
     pub error: f64,
+}
+
+impl<const D: usize> Row<D> {
+    /// The square of the gradient: an entry of JJᵀ's diagonal.
+    pub fn square(&self) -> f64 {
+        self.gradient.iter().flatten().map(|g| g * g).sum()
+    }
 }
 
 /// The step of each of the zone's `vertices`. `shift`: the diagonal γU, which is positive.
@@ -71,9 +84,10 @@ impl Columns {
 
     /// Jᵀy.
     fn spread<const D: usize>(&self, rows: &[Row<D>], y: &[f64], out: &mut [[f64; D]]) {
-        parallel::for_each_chunk(out, CHUNK, |chunk, out| {
+        let each = share(out.len());
+        parallel::for_each_chunk(out, each, |chunk, out| {
             for (k, out) in out.iter_mut().enumerate() {
-                let v = chunk * CHUNK + k;
+                let v = chunk * each + k;
                 let range = self.begin[v] as usize..self.begin[v + 1] as usize;
                 *out = [0.0; D];
                 for &(row, corner) in &self.entries[range] {
@@ -142,23 +156,29 @@ fn solve_dense<const D: usize>(rows: &[Row<D>], shift: f64) -> Vec<f64> {
 }
 
 /// The same by conjugate gradients, of which a step needs no more than a direction: the matrix is applied as
-/// J(Jᵀy), never formed.
+/// J(Jᵀy), never formed. Its diagonal preconditions: gradients grow with the elements.
 fn solve_iteratively<const D: usize>(rows: &[Row<D>], columns: &Columns, shift: f64) -> Vec<f64> {
     let m = rows.len();
+    let inverse: Vec<f64> = rows
+        .iter()
+        .map(|row| 1.0 / (row.square() + shift))
+        .collect();
     let mut y = vec![0.0; m];
     let mut residual: Vec<f64> = rows.iter().map(|row| row.error).collect();
-    let mut direction = residual.clone();
+    let mut scaled: Vec<f64> = residual.iter().zip(&inverse).map(|(r, i)| r * i).collect();
+    let mut direction = scaled.clone();
     let mut image = vec![0.0; m];
     let mut moved = vec![[0.0; D]; columns.begin.len() - 1];
-    let mut square = dot(&residual, &residual);
+    let mut square = dot(&residual, &scaled);
     let goal = CG_TOLERANCE * CG_TOLERANCE * square;
     for _ in 0..MOST_CG {
         if !(square > goal) {
             break;
         }
         columns.spread(rows, &direction, &mut moved);
-        parallel::for_each_chunk(&mut image, CHUNK, |chunk, image| {
-            let first = chunk * CHUNK;
+        let each = share(m);
+        parallel::for_each_chunk(&mut image, each, |chunk, image| {
+            let first = chunk * each;
             let rows = rows[first..].iter().zip(&direction[first..]);
             for (image, (row, d)) in image.iter_mut().zip(rows) {
                 *image = gather(row, &moved) + shift * d;
@@ -168,11 +188,12 @@ fn solve_iteratively<const D: usize>(rows: &[Row<D>], columns: &Columns, shift: 
         for i in 0..m {
             y[i] += step * direction[i];
             residual[i] -= step * image[i];
+            scaled[i] = residual[i] * inverse[i];
         }
-        let next = dot(&residual, &residual);
+        let next = dot(&residual, &scaled);
         let factor = next / square;
         square = next;
-        for (d, r) in direction.iter_mut().zip(&residual) {
+        for (d, r) in direction.iter_mut().zip(&scaled) {
             *d = r + factor * *d;
         }
     }
