@@ -229,6 +229,7 @@ impl<const D: usize> Gini<D> {
         }
         let (mut fewest, mut vain) = (usize::MAX, 0);
         let mut count = 0;
+        let most = self.options.max_polish_iterations;
         loop {
             self.elements.values(&self.trial, &mut self.trial_values);
             let violated = self.set.add_elements(&self.elements, &self.trial_values);
@@ -241,10 +242,15 @@ impl<const D: usize> Gini<D> {
                 self.remember(inverted);
             }
             self.trace_state(inverted, violated);
-            if collisions == 0 && self.all_better() && self.is_clear() {
+            let acceptable = collisions == 0 && self.all_better() && self.is_clear();
+            if acceptable {
                 self.accept(inverted);
                 step.accepted = true;
                 self.failures = 0;
+            }
+            // what is left and goes quickly would take a step of the whole body
+            let goes_on = self.contacts.is_none() && inverted <= fewest / 2;
+            if step.accepted && (inverted == 0 || !goes_on || count == most) {
                 return true;
             }
             let bad = inverted + collisions;
@@ -252,7 +258,7 @@ impl<const D: usize> Gini<D> {
                 true => (bad, 0),
                 false => (fewest, vain + 1),
             };
-            if count == self.options.max_polish_iterations || vain > MOST_VAIN {
+            if count == most || vain > MOST_VAIN {
                 break;
             }
             let polished = polish(
