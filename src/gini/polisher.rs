@@ -17,6 +17,9 @@ const MOST_HALVINGS: u32 = 12;
 /// Zones that are one piece of work.
 const CHUNK: usize = 4;
 
+/// Constraints of a zone that are one piece of work.
+const MEMBERS: usize = 1024;
+
 /// What an iteration did.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Polished {
@@ -88,27 +91,17 @@ fn step<const D: usize>(
         .iter()
         .map(|&c| constraints[c as usize].damping)
         .fold(f64::INFINITY, f64::min);
-    let mut rows: Vec<Row<D>> = Vec::new();
-    for &c in members {
-        let constraint = &constraints[c as usize];
-        let p = corners(x, &constraint.slots);
-        let error = constraint.value_at(&p) - constraint.offset;
-        if error < 0.0 && !constraint.skipped {
-            job.before += 0.5 * error * error;
-            let mut gradient = constraint.gradient_at(&p);
-            let vertices = constraint.slots.map(|slot| zones.local(slot));
-            for (vertex, g) in vertices.iter().zip(&mut gradient) {
-                if *vertex == Zones::HELD {
-                    *g = [0.0; D];
-                }
-            }
-            rows.push(Row {
-                vertices: vertices.map(|v| if v == Zones::HELD { 0 } else { v }),
-                gradient,
-                error,
-            });
-        }
-    }
+    let mut parts: Vec<Vec<Row<D>>> = Vec::new();
+    parts.resize_with(members.len().div_ceil(MEMBERS), Vec::new);
+    parallel::for_each_chunk(&mut parts, 1, |part, rows| {
+        let members = members[part * MEMBERS..].iter().take(MEMBERS);
+        rows[0].extend(members.filter_map(|&c| violated_row(&constraints[c as usize], zones, x)));
+    });
+    let rows = match parts.len() {
+        1 => parts.swap_remove(0),
+        _ => parts.into_iter().flatten().collect(),
+    };
+    job.before = rows.iter().map(|row| 0.5 * row.error * row.error).sum();
     let most = rows.iter().map(Row::square).fold(0.0, f64::max);
     let shift = gamma * most;
     let direction = match shift > 0.0 {
@@ -116,21 +109,22 @@ fn step<const D: usize>(
         false => vec![[0.0; D]; vertices.len()],
     };
 
-    let value = |x: &[[f64; D]], held: &[[f64; D]]| -> f64 {
-        let mut sum = 0.0;
-        for &c in members {
-            let constraint = &constraints[c as usize];
-            if constraint.skipped {
-                continue;
+    let mut errors = vec![0.0; members.len()];
+    let mut value = |x: &[[f64; D]], held: &[[f64; D]]| -> f64 {
+        parallel::for_each_chunk(&mut errors, MEMBERS, |part, errors| {
+            for (error, &c) in errors.iter_mut().zip(&members[part * MEMBERS..]) {
+                let constraint = &constraints[c as usize];
+                if constraint.skipped {
+                    continue;
+                }
+                let p = constraint.slots.map(|slot| match zones.local(slot) {
+                    Zones::HELD => held[slot as usize],
+                    local => x[local as usize],
+                });
+                *error = (constraint.value_at(&p) - constraint.offset).min(0.0);
             }
-            let p = constraint.slots.map(|slot| match zones.local(slot) {
-                Zones::HELD => held[slot as usize],
-                local => x[local as usize],
-            });
-            let e = (constraint.value_at(&p) - constraint.offset).min(0.0);
-            sum += 0.5 * e * e;
-        }
-        sum
+        });
+        errors.iter().map(|e| 0.5 * e * e).sum()
     };
     let from: Vec<[f64; D]> = vertices.iter().map(|&s| x[s as usize]).collect();
     let mut alpha = 1.0;
@@ -157,4 +151,29 @@ fn step<const D: usize>(
         _ => 1.0,
     };
     job.damping = (gamma * scale).clamp(DAMPING[0], DAMPING[1]);
+}
+
+/// The row of a constraint, if it is violated.
+fn violated_row<const D: usize>(
+    constraint: &Constraint,
+    zones: &Zones,
+    x: &[[f64; D]],
+) -> Option<Row<D>> {
+    if constraint.skipped {
+        return None;
+    }
+    let p = corners(x, &constraint.slots);
+    let error = constraint.value_at(&p) - constraint.offset;
+    let mut gradient = (error < 0.0).then(|| constraint.gradient_at(&p))?;
+    let vertices = constraint.slots.map(|slot| zones.local(slot));
+    for (vertex, g) in vertices.iter().zip(&mut gradient) {
+        if *vertex == Zones::HELD {
+            *g = [0.0; D];
+        }
+    }
+    Some(Row {
+        vertices: vertices.map(|v| if v == Zones::HELD { 0 } else { v }),
+        gradient,
+        error,
+    })
 }
