@@ -191,7 +191,7 @@ mod tests {
                 .map(|_| (random(n as u64) as u32, random(n as u64) as u32))
                 .collect();
             let graph = Graph::new(n, edges.iter().copied());
-            let is_left = |v: u32| v % 2 == 0;
+            let is_left = |v: u32| v.is_multiple_of(2);
             let crossing = || edges.iter().filter(|e| is_left(e.0) != is_left(e.1));
             let is_cover = |set: u32| crossing().all(|&(a, b)| (set >> a | set >> b) & 1 == 1);
             let sets = (0..1u32 << n).filter(|&set| is_cover(set));
