@@ -9,6 +9,7 @@
 //!
 //! See `ARCHITECTURE.md` for what lives where and why.
 
+mod boxes;
 pub mod certificate;
 pub mod collision;
 pub mod deformation;

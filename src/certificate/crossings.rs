@@ -4,7 +4,7 @@
 //! with, so nothing is lost to rounding; the narrow phase (`segments`) decides exactly.
 
 use super::segments::{CrossingKind, meet, meet_beyond};
-use crate::collision::{Bounds, Tree};
+use crate::boxes::{Bounds, Tree};
 use glam::DVec2;
 use std::ops::ControlFlow;
 

@@ -1,10 +1,9 @@
 //! The broad phase: which vertices, edges and faces come near each other while they move.
 
 use super::Boundary;
-use super::boxes::Bounds;
 use super::ccd::{Impact, Pair, impact};
 use super::separation::Four;
-use super::tree::Tree;
+use crate::boxes::{Bounds, Tree};
 use crate::parallel;
 use std::ops::ControlFlow;
 

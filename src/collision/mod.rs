@@ -11,19 +11,15 @@
 //! All lists come sorted; nothing depends on the number of threads.
 
 mod boundary;
-mod boxes;
 mod broad;
 mod ccd;
 mod intersection;
 mod overlap;
 mod separation;
-mod tree;
 pub(crate) mod vector;
 
 pub use boundary::{Boundary, BoundaryError};
-pub(crate) use boxes::Bounds;
 pub use broad::{BroadPhase, Candidate};
 pub use ccd::{Impact, Pair, impact, time_of_impact};
 pub use intersection::intersections;
 pub use overlap::overlaps;
-pub(crate) use tree::Tree;

@@ -6,8 +6,7 @@
 //! point over which there are two elements: the map is injective.
 
 use super::Boundary;
-use super::boxes::Bounds;
-use super::tree::Tree;
+use crate::boxes::{Bounds, Tree};
 use crate::certificate::{orientation, orientation_of_tetrahedron};
 use glam::{DVec2, DVec3};
 use std::cmp::Ordering;

@@ -1,6 +1,6 @@
 //! A binary tree of boxes: built once by halving, refitted as the boxes move.
 
-use super::boxes::Bounds;
+use super::Bounds;
 use crate::total_order::ranked;
 use std::ops::ControlFlow;
 
