@@ -29,6 +29,12 @@ fn of_plane(t: &Tangle<3>) -> Untangling {
 fn run(untangling: &mut Untangling) -> Status {
     while untangling.solver().status() == Status::Running {
         untangling.step().expect("a step");
+        let report = untangling.solver().report();
+        let step = report.gini.as_ref().expect("of a step");
+        // what goes quickly is not left to a step of the whole body
+        if let Some(last) = step.polish.last().filter(|_| step.reached) {
+            assert!(report.inverted == 0 || report.inverted > last.inverted / 2);
+        }
     }
     untangling.solver().status()
 }
