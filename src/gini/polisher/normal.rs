@@ -11,12 +11,15 @@ const DENSE: usize = 40;
 const MOST_CG: usize = 60;
 const CG_TOLERANCE: f64 = 1e-2;
 
-/// Rows, or vertices, that are one piece of work.
-const CHUNK: usize = 512;
+/// Fewer rows, or vertices, are not worth a thread: every iteration hands them over twice, and in a browser that takes
+/// longer.
+const ROWS: usize = 2048;
+const VERTICES: usize = 512;
 
-/// A thread's share of so many rows or vertices.
-fn share(count: usize) -> usize {
-    count.div_ceil(parallel::threads()).max(CHUNK)
+/// A thread's share of so many, none less than `least`.
+fn share(count: usize, least: usize) -> usize {
+    let threads = parallel::threads().min(count / least).max(1);
+    count.div_ceil(threads).max(1)
 }
 
 /// A violated constraint of a zone: e < 0 and its gradient on the zone's vertices.
@@ -84,7 +87,7 @@ impl Columns {
 
     /// Jᵀy.
     fn spread<const D: usize>(&self, rows: &[Row<D>], y: &[f64], out: &mut [[f64; D]]) {
-        let each = share(out.len());
+        let each = share(out.len(), VERTICES);
         parallel::for_each_chunk(out, each, |chunk, out| {
             for (k, out) in out.iter_mut().enumerate() {
                 let v = chunk * each + k;
@@ -176,7 +179,7 @@ fn solve_iteratively<const D: usize>(rows: &[Row<D>], columns: &Columns, shift: 
             break;
         }
         columns.spread(rows, &direction, &mut moved);
-        let each = share(m);
+        let each = share(m, ROWS);
         parallel::for_each_chunk(&mut image, each, |chunk, image| {
             let first = chunk * each;
             let rows = rows[first..].iter().zip(&direction[first..]);
