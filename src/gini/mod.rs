@@ -43,6 +43,7 @@ mod solver;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod winding;
 mod zones;
 
 pub use constraint::{Constraint, Key, Law};

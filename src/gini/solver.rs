@@ -13,6 +13,7 @@ use super::polisher::polish;
 use super::problem::not_positive;
 use super::set::ConstraintSet;
 use super::trace::Trace;
+use super::winding::winds;
 use super::zones::Zones;
 use crate::optim::{
     Criterion, GiniStep, Inspection, Phase, PhaseKind, PolishStep, SolveError, Solver, Status,
@@ -83,6 +84,8 @@ pub struct Gini<const D: usize> {
     first_offset: f64,
     /// Are Z and U to be set from x̄?
     begins_anew: bool,
+    /// How often it has gone on because elements wound around a vertex.
+    unwindings: u32,
     /// Steps in a row that have not lessened the number of inverted elements.
     idle: usize,
     report: StepReport,
@@ -95,6 +98,10 @@ const MOST_IDLE: usize = 15;
 /// many, up to the most.
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
+
+/// How often a state without inverted elements is relaxed because some wind around a vertex: there it is free of
+/// inversions, not injective.
+const MOST_UNWINDINGS: u32 = 1;
 
 /// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
 const LEAST_WITH_CONTACTS: f64 = 1e-3;
@@ -146,6 +153,8 @@ impl<const D: usize> Gini<D> {
         step.polish_milliseconds = clock.milliseconds() - self.trace_milliseconds();
         self.publish();
         let done = self.is_done();
+        let unwinds = done && iteration < self.options.max_iterations && self.is_to_unwind();
+        let done = done && !unwinds;
         self.report.iteration = iteration;
         self.look();
         step.smallest_measure = self.smallest(&self.values);
@@ -168,7 +177,10 @@ impl<const D: usize> Gini<D> {
             };
             // where no element is inverted energy alone cannot help
             let helps = self.contacts.is_none() || self.best.inverted > 0;
-            if self.idle >= MOST_IDLE {
+            if unwinds {
+                self.unwindings += 1;
+                self.relax(RELAXATION);
+            } else if self.idle >= MOST_IDLE {
                 self.report.status = Status::Stalled;
             } else if iteration.is_power_of_two() && helps {
                 self.relax((RELAXATION * iteration).min(MOST_RELAXATION));
@@ -363,6 +375,13 @@ impl<const D: usize> Gini<D> {
     fn is_injective(&self) -> bool {
         self.values.iter().all(|&c| c > 0.0)
             && not_positive(D, &self.corners, &self.positions).is_empty()
+    }
+
+    /// Do elements, all of them positive, go around a vertex more than once, and is there hope for less?
+    fn is_to_unwind(&self) -> bool {
+        self.contacts.is_none()
+            && self.unwindings < MOST_UNWINDINGS
+            && winds::<D>(&self.corners, self.positions.as_chunks::<D>().0)
     }
 
     /// Makes the best state x.

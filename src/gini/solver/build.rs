@@ -162,6 +162,7 @@ impl<const D: usize> Gini<D> {
             is_enclosed,
             first_offset,
             begins_anew: true,
+            unwindings: 0,
             idle: 0,
             report: StepReport::at_start(),
             elements,
