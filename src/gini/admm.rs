@@ -12,7 +12,7 @@ use crate::wrapd::block::{BLOCK, Block, BlockSums};
 use crate::wrapd::elements::{Elements, Model, Shape};
 use crate::wrapd::external::{External, Terms};
 use crate::wrapd::kernels::Pass;
-use crate::wrapd::layout::{build_blocks, corner_lists};
+use crate::wrapd::setup::Setup;
 use crate::wrapd::system::System;
 
 /// Vertices that are gathered as one piece of work.
@@ -79,23 +79,13 @@ impl Admm {
         external: &External,
     ) -> Result<Self, BuildError> {
         let shape = body.shape;
-        let k = shape.constants.rest_stiffness;
         let terms = Terms::new(external, start, &elimination.slot, elimination.free);
-        let (slot, free) = (&elimination.slot, elimination.free);
-        let (system, (blocks, (corner_begin, corners))) = parallel::join(
-            || {
-                let mut system = System::new(rest, elimination, Some(external))?;
-                system
-                    .factorize(Some(&terms), |_| k)
-                    .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
-                Ok::<_, BuildError>(system)
-            },
-            || {
-                let blocks = build_blocks(rest, slot, &shape);
-                (blocks, corner_lists(rest, slot, free))
-            },
-        );
-        let system = system?;
+        let Setup {
+            system,
+            blocks,
+            corner_begin,
+            corners,
+        } = Setup::new(rest, elimination, &shape, Some(external), Some(&terms))?;
         let stride = Pass::Last.stride(shape.dimension);
         let diagonal = system.diagonal();
         let compliance = diagonal.map(f64::recip).sum::<f64>() / elimination.free.max(1) as f64;

@@ -18,6 +18,7 @@ pub(crate) mod kernels;
 pub(crate) mod layout;
 mod options;
 mod problem;
+pub(crate) mod setup;
 mod solver;
 pub(crate) mod system;
 

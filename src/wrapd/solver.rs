@@ -7,7 +7,8 @@ use super::block::{BLOCK, Block, BlockSums};
 use super::elements::{Elements, Model, Shape};
 use super::external::Terms;
 use super::kernels::Pass;
-use super::layout::{build_blocks, corner_lists, element_order};
+use super::layout::element_order;
+use super::setup::Setup;
 use super::system::System;
 use super::{Coupling, Problem, WrapdOptions};
 use crate::energy::Energy;
@@ -101,21 +102,12 @@ impl Wrapd {
         let terms = problem.external.map(|external| {
             Terms::new(external, problem.start, &elimination.slot, elimination.free)
         });
-        let (system, (blocks, (corner_begin, corners))) = parallel::join(
-            || {
-                let mut system = System::new(rest, &elimination, problem.external)?;
-                system
-                    .factorize(terms.as_ref(), |_| shape.constants.rest_stiffness)
-                    .map_err(|e| BuildError::NotPositiveDefinite { pivot: e.pivot })?;
-                Ok::<_, BuildError>(system)
-            },
-            || {
-                let blocks = build_blocks(rest, &elimination.slot, &shape);
-                let corners = corner_lists(rest, &elimination.slot, elimination.free);
-                (blocks, corners)
-            },
-        );
-        let system = system?;
+        let Setup {
+            system,
+            blocks,
+            corner_begin,
+            corners,
+        } = Setup::new(rest, &elimination, &shape, problem.external, terms.as_ref())?;
         let Elimination { slot, free, .. } = elimination;
         // forces of the coupling, then those of the energy
         let corners_per_block = 2 * (rest.stretches + 1) * dimension * BLOCK;
