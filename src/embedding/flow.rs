@@ -12,10 +12,10 @@ mod surface;
 
 use crate::collision::{Boundary, BroadPhase, intersections};
 use crate::disjoint_sets::DisjointSets;
+use crate::geometry::seen_part;
 use crate::optim::BuildError;
 use glam::DVec3;
 use outline::Outline;
-use std::f64::consts::PI;
 use surface::Surface;
 
 /// What [`flow_apart`] did.
@@ -274,20 +274,8 @@ impl<const D: usize> Part<D> {
         if p.cmplt(low).any() || p.cmpgt(high).any() {
             return 0.0;
         }
-        let angle = |f: &[u32; D]| {
-            let c = self.corners(f, x).map(|q| point(&q) - p);
-            match D {
-                2 => f64::atan2(c[0].cross(c[1]).z, c[0].dot(c[1])) / (2.0 * PI),
-                // van Oosterom & Strackee (1983)
-                _ => {
-                    let (a, b, c) = (c[0], c[1], c[D - 1]);
-                    let (la, lb, lc) = (a.length(), b.length(), c.length());
-                    let scale = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-                    f64::atan2(a.dot(b.cross(c)), scale) / (2.0 * PI)
-                }
-            }
-        };
-        self.facets.iter().map(angle).sum()
+        let part = |f: &[u32; D]| seen_part(&self.corners(f, x).map(|q| point(&q) - p));
+        self.facets.iter().map(part).sum()
     }
 }
 

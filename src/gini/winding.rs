@@ -1,37 +1,25 @@
 //! How often elements go around a vertex.
 
-use core::f64::consts::PI;
+use crate::geometry::seen_part;
+use glam::DVec3;
 
-/// Do the elements (D + 1 `corners` each, none inverted or flat) go around a vertex more than once? In floating point: their
-/// angles at an inner vertex sum to 2π (solid angles to 4π) or a multiple, and at one of the boundary to no more.
+/// Do the elements (D + 1 `corners` each, none inverted or flat) go around a vertex more than once? In floating point: at an
+/// inner vertex they take up all directions once, or a multiple, and at one of the boundary no more.
 pub(super) fn winds<const D: usize>(corners: &[u32], points: &[[f64; D]]) -> bool {
-    let mut sums = vec![0.0; points.len()];
+    let point = |v: u32| {
+        let p = &points[v as usize];
+        DVec3::new(p[0], p[1], if D == 2 { 0.0 } else { p[D - 1] })
+    };
+    let mut seen = vec![0.0; points.len()];
     for simplex in corners.chunks_exact(D + 1) {
         for k in 0..=D {
-            let from = points[simplex[k] as usize];
-            let edges: [[f64; D]; D] = core::array::from_fn(|i| {
-                let to = points[simplex[(k + 1 + i) % (D + 1)] as usize];
-                core::array::from_fn(|d| to[d] - from[d])
-            });
-            sums[simplex[k] as usize] += angle(&edges);
+            let vertex = simplex[k];
+            let opposite: [DVec3; D] =
+                core::array::from_fn(|i| point(simplex[(k + 1 + i) % (D + 1)]) - point(vertex));
+            seen[vertex as usize] += seen_part(&opposite).abs();
         }
     }
-    let full = if D == 2 { 2.0 * PI } else { 4.0 * PI };
-    sums.iter().any(|&sum| sum > 1.001 * full)
-}
-
-/// The angle between two edges, or the solid angle between three (Van Oosterom & Strackee 1983).
-fn angle<const D: usize>(edges: &[[f64; D]; D]) -> f64 {
-    let dot = |i: usize, j: usize| -> f64 { (0..D).map(|d| edges[i][d] * edges[j][d]).sum() };
-    if D == 2 {
-        let cross = edges[0][0] * edges[1][1] - edges[0][1] * edges[1][0];
-        return cross.abs().atan2(dot(0, 1));
-    }
-    let minor = |i: usize, j: usize| edges[1][i] * edges[2][j] - edges[1][j] * edges[2][i];
-    let volume = edges[0][0] * minor(1, 2) - edges[0][1] * minor(0, 2) + edges[0][2] * minor(0, 1);
-    let [a, b, c] = [0, 1, 2].map(|i| dot(i, i).sqrt());
-    let denominator = a * b * c + dot(0, 1) * c + dot(1, 2) * a + dot(2, 0) * b;
-    2.0 * volume.abs().atan2(denominator)
+    seen.iter().any(|&part| part > 1.001)
 }
 
 #[cfg(test)]
