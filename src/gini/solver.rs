@@ -84,8 +84,8 @@ pub struct Gini<const D: usize> {
     first_offset: f64,
     /// Are Z and U to be set from x̄?
     begins_anew: bool,
-    /// How often it has gone on because elements wound around a vertex.
-    unwindings: u32,
+    /// Has it gone on because elements wound around a vertex? Once is all that helps.
+    has_unwound: bool,
     /// Steps in a row that have not lessened the number of inverted elements.
     idle: usize,
     report: StepReport,
@@ -98,10 +98,6 @@ const MOST_IDLE: usize = 15;
 /// many, up to the most.
 const RELAXATION: usize = 8;
 const MOST_RELAXATION: usize = 64;
-
-/// How often a state without inverted elements is relaxed because some wind around a vertex: there it is free of
-/// inversions, not injective.
-const MOST_UNWINDINGS: u32 = 1;
 
 /// Below this η of an element does not fall where overlap counts: contacts with facets that collapse say nothing.
 const LEAST_WITH_CONTACTS: f64 = 1e-3;
@@ -178,7 +174,7 @@ impl<const D: usize> Gini<D> {
             // where no element is inverted energy alone cannot help
             let helps = self.contacts.is_none() || self.best.inverted > 0;
             if unwinds {
-                self.unwindings += 1;
+                self.has_unwound = true;
                 self.relax(RELAXATION);
             } else if self.idle >= MOST_IDLE {
                 self.report.status = Status::Stalled;
@@ -377,10 +373,11 @@ impl<const D: usize> Gini<D> {
             && not_positive(D, &self.corners, &self.positions).is_empty()
     }
 
-    /// Do elements, all of them positive, go around a vertex more than once, and is there hope for less?
+    /// Do elements, all of them positive, go around a vertex more than once, and is there hope for less? Such a state is
+    /// free of inversions, not injective.
     fn is_to_unwind(&self) -> bool {
         self.contacts.is_none()
-            && self.unwindings < MOST_UNWINDINGS
+            && !self.has_unwound
             && winds::<D>(&self.corners, self.positions.as_chunks::<D>().0)
     }
 

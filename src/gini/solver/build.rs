@@ -162,7 +162,7 @@ impl<const D: usize> Gini<D> {
             is_enclosed,
             first_offset,
             begins_anew: true,
-            unwindings: 0,
+            has_unwound: false,
             idle: 0,
             report: StepReport::at_start(),
             elements,

@@ -94,9 +94,7 @@ impl<const D: usize> Gini<D> {
     /// Goes on from these positions, vertices × dimension, which have to be as injective as x is; another solver found
     /// them, after so many seconds in all.
     pub(crate) fn restart(&mut self, positions: &[f64], seconds: f64) {
-        for (position, &slot) in positions.as_chunks::<D>().0.iter().zip(&self.slot) {
-            self.trial[slot as usize] = *position;
-        }
+        self.trial = self.by_slot(positions);
         self.elements.values(&self.trial, &mut self.trial_values);
         self.accept(self.count_inverted());
         self.publish();
