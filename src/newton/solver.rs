@@ -50,7 +50,7 @@ pub struct Newton {
     /// Vertices one by one, after steps cut short.
     relaxation: Option<Relaxation>,
     /// What keeps the boundary from passing through itself.
-    apart: Option<Box<dyn Apart>>,
+    apart: Option<Apart>,
     /// Does no step invert an element, even where the energy would not mind?
     keeps_positive: bool,
     /// Slot of each vertex: free ones in elimination order, then the pinned.

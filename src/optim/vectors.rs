@@ -18,6 +18,9 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sum[0]
 }
 
+/// Fewer of these units [`dots`] takes by itself: others would have to be told.
+const SHARED: usize = 4;
+
 /// Most vectors that [`dots`] takes at once without another round.
 const ROUND: usize = 8;
 
@@ -50,7 +53,7 @@ pub fn dots<'a>(
                 *t += s;
             }
         };
-        if parallel::threads() > 1 && chunks > 3 {
+        if parallel::threads() > 1 && chunks >= SHARED {
             let mut partial = vec![[0.0; ROUND]; chunks];
             parallel::for_each_chunk(&mut partial, 1, |chunk, sums| {
                 one_chunk(chunk, &mut sums[0]);

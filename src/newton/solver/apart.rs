@@ -6,41 +6,42 @@ use crate::geometry::RestShape;
 use crate::optim::BuildError;
 
 /// What keeps the boundary from passing through itself.
-pub(super) trait Apart: Send {
+pub(super) struct Apart {
+    detection: Box<dyn Detection>,
+    /// Parts nearer to each other than this, a length, count as in contact.
+    gap: f64,
+    /// The most that a vertex may go in a step.
+    reach: f64,
+}
+
+/// Continuous detection, in the plane or in space.
+trait Detection: Send {
     /// Of the step `longest` along `direction` from `x` (both by slot, interleaved; below `free` slots move) the part
-    /// that is free; up to `fraction` of the way to the first contact, if there is one.
-    fn free_part(
+    /// up to the first contact, if there is one.
+    fn first_contact(
         &mut self,
         x: &[f64],
         direction: &[f64],
         free: usize,
         longest: f64,
-        fraction: f64,
+        gap: f64,
     ) -> Option<f64>;
-
-    /// The most that a vertex may go in a step.
-    fn reach(&self) -> f64;
-
-    /// Parts nearer to each other than this, a length, count as in contact.
-    fn set_gap(&mut self, gap: f64);
 }
 
-struct Detection<const D: usize> {
+struct Facets<const D: usize> {
     boundary: Boundary<D>,
     broad: BroadPhase<D>,
-    gap: f64,
-    reach: f64,
     to: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Apart for Detection<D> {
-    fn free_part(
+impl<const D: usize> Detection for Facets<D> {
+    fn first_contact(
         &mut self,
         x: &[f64],
         direction: &[f64],
         free: usize,
         longest: f64,
-        fraction: f64,
+        gap: f64,
     ) -> Option<f64> {
         let (from, along) = (x.as_chunks::<D>().0, direction.as_chunks::<D>().0);
         self.to.clear();
@@ -51,20 +52,11 @@ impl<const D: usize> Apart for Detection<D> {
         let boundary = &self.boundary;
         let hits = self
             .broad
-            .collisions(boundary, from, &self.to, self.gap, |pair| {
+            .collisions(boundary, from, &self.to, gap, |pair| {
                 let vertices = pair.vertices(boundary);
                 vertices.iter().any(|&v| (v as usize) < free)
             });
-        let first = hits.iter().map(|hit| hit.1.time).min_by(f64::total_cmp);
-        first.map(|time| fraction * time)
-    }
-
-    fn reach(&self) -> f64 {
-        self.reach
-    }
-
-    fn set_gap(&mut self, gap: f64) {
-        self.gap = gap;
+        hits.iter().map(|hit| hit.1.time).min_by(f64::total_cmp)
     }
 }
 
@@ -76,9 +68,18 @@ impl Newton {
     /// # Errors
     /// `NonManifoldFacet` where more than two elements share a facet.
     pub fn keep_apart(&mut self, rest: &RestShape, gap: f64) -> Result<(), BuildError> {
-        self.apart = Some(match self.evaluation.shape.dimension {
-            2 => Box::new(self.detection::<2>(rest, gap)?),
-            _ => Box::new(self.detection::<3>(rest, gap)?),
+        let dimension = self.evaluation.shape.dimension;
+        self.apart = Some(Apart {
+            detection: match dimension {
+                2 => Box::new(self.facets::<2>(rest)?),
+                _ => Box::new(self.facets::<3>(rest)?),
+            },
+            gap,
+            reach: rest
+                .measure
+                .iter()
+                .sum::<f64>()
+                .powf(1.0 / dimension as f64),
         });
         // curves and vertices one by one are not looked after
         self.turns = None;
@@ -89,7 +90,7 @@ impl Newton {
     /// Another gap of [`Self::keep_apart`].
     pub(crate) fn set_gap(&mut self, gap: f64) {
         if let Some(apart) = &mut self.apart {
-            apart.set_gap(gap);
+            apart.gap = gap;
         }
     }
 
@@ -110,20 +111,16 @@ impl Newton {
             .map(|d| d.iter().map(|d| d * d).sum::<f64>());
         let way = squares.fold(0.0, f64::max).sqrt();
         // what is swept far meets everything, and most of it for nothing
-        let longest = longest.min(1.0).min(apart.reach() / way);
+        let longest = longest.min(1.0).min(apart.reach / way);
         let free = self.unknowns / dimension;
-        let fraction = self.options.fraction;
-        match apart.free_part(&self.x, &self.direction, free, longest, fraction) {
-            Some(part) => (part * longest, true),
+        let detection = &mut apart.detection;
+        match detection.first_contact(&self.x, &self.direction, free, longest, apart.gap) {
+            Some(time) => (self.options.fraction * time * longest, true),
             None => (longest, false),
         }
     }
 
-    fn detection<const D: usize>(
-        &self,
-        rest: &RestShape,
-        gap: f64,
-    ) -> Result<Detection<D>, BuildError> {
+    fn facets<const D: usize>(&self, rest: &RestShape) -> Result<Facets<D>, BuildError> {
         let slots = rest.vertices.iter().map(|&v| self.slot[v as usize]);
         let elements: Vec<u32> = slots.collect();
         let boundary = Boundary::new(&elements).map_err(|e| {
@@ -133,11 +130,9 @@ impl Newton {
                 elements: e.elements,
             }
         })?;
-        Ok(Detection {
+        Ok(Facets {
             boundary,
             broad: BroadPhase::default(),
-            gap,
-            reach: rest.measure.iter().sum::<f64>().powf(1.0 / D as f64),
             to: Vec::new(),
         })
     }
