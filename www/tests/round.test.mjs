@@ -190,7 +190,8 @@ describe('a chain', () => {
     assert.deepEqual(after.minimum.filter((m, i) => m !== before.minimum[i]).length, 1);
     assert.equal(after.shown, 16, 'the end stays on show');
     await page.click('#share');
-    assert.match(await page.textContent('#notice-text'), /dragged are not in it/);
+    // The notice comes when the clipboard has answered.
+    await page.waitForFunction(() => /dragged are not in it/.test(document.getElementById('notice-text').textContent));
     await page.click('#another');
     await page.waitForFunction(() => globalThis.foldfreePage.session.minimum[0] && /seed=4/.test(location.search));
     await page.selectOption('#points', '8');
